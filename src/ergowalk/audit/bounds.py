@@ -1,0 +1,126 @@
+"""Lines about bounds: the ground reaction, the joint moments, the centre of pressure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ergowalk.audit import residuals
+from ergowalk.audit.record import FLAT, FOREFOOT, HEEL, JOINTS, SWING, TOE, Record, as_number
+from ergowalk.audit.report import LEGS, AuditLine, Residual, Worst, largest, worst
+from ergowalk.audit.walker import Array
+
+OFF = "off"
+LOADED = 0.1
+"""Share of body weight above which the centre of pressure counts."""
+
+NOT_STATED = "the stored problem does not state this limit"
+NO_LIMIT = "no limit set"
+
+
+def bound_lines(record: Record) -> list[AuditLine]:
+    """R_y >= 0 and the limits of the stored problem, in body weights (times 1 m)."""
+    weight = record.walker.weight
+    force_x, force_y = np.moveaxis(record.raw["ground_reaction_force"], -1, 0)
+    upward = worst(-force_y / weight, record.time, LEGS)
+    lines = [residuals.REACTION_UPWARD.judged(upward)]
+
+    limits = record.table("limits")
+    cap = _limit(limits.get("vertical_reaction_body_weights"))
+    excess = force_y / weight - cap
+    lines.append(_limited(residuals.REACTION_CAP, record, cap, excess))
+    friction = _limit(limits.get("friction_coefficient"))
+    # no cone is not a cone of infinite width: inf times zero is not a number
+    excess = (np.abs(force_x) - (friction if np.isfinite(friction) else 0.0) * force_y) / weight
+    lines.append(_limited(residuals.FRICTION, record, friction, excess))
+    return lines + _moment_lines(record)
+
+
+def _limited(line: Residual, record: Record, limit: float, excess: Array) -> AuditLine:
+    if np.isnan(limit):
+        return line.cannot_be_judged(NOT_STATED)
+    if np.isinf(limit):
+        return line.nothing_to_judge(NO_LIMIT)
+    return line.judged(worst(excess, record.time, LEGS), f"limit {limit:g}")
+
+
+def _limit(stated: object) -> float:
+    """A limit of the stored problem: inf where it is off, NaN where the problem does not say."""
+    return np.inf if stated == OFF else as_number(stated)
+
+
+def _moment_lines(record: Record) -> list[AuditLine]:
+    limits = record.table("limits")
+    return [
+        _moment_line(
+            residuals.MOMENT_LIMITS, record, limits.get("moment_nm_per_kg"), _moment_excess
+        ),
+        _moment_line(
+            residuals.MOMENT_RATE_LIMITS,
+            record,
+            limits.get("moment_rate_nm_per_kg_s"),
+            _rate_excess,
+        ),
+    ]
+
+
+def _moment_line(
+    line: Residual, record: Record, stated: object, check: Callable[[Record, int, float], Worst]
+) -> AuditLine:
+    """Line of a bound per joint and kilogram, ``check`` giving the excess [N m] at one joint."""
+    table = stated if isinstance(stated, dict) else {}
+    bounds = {joint: _limit(table.get(name)) for joint, name in enumerate(JOINTS)}
+    if any(np.isnan(bound) for bound in bounds.values()):
+        return line.cannot_be_judged(NOT_STATED)
+    bounds = {joint: bound * record.walker.mass for joint, bound in bounds.items()}
+    found = [check(record, joint, b) for joint, b in bounds.items() if np.isfinite(b)]
+    if not found:
+        return line.nothing_to_judge(NO_LIMIT)
+    over = largest(found)
+    return line.judged(Worst(over.value / record.walker.weight, over.where))
+
+
+def _physical_moment(record: Record, joint: int) -> Array:
+    """A joint moment (n, 2) where it is one.
+
+    Up to heel-off the toes move with the foot: the stored metatarsal moment only balances the
+    last line of (1) there, and what a muscle must give is zero.
+    """
+    moment = record.raw["joint_moment"][..., joint]
+    if JOINTS[joint] != "metatarsal":
+        return moment
+    return np.where(np.isin(record.phase, (HEEL, FLAT)), 0.0, moment)
+
+
+def _moment_excess(record: Record, joint: int, bound: float) -> Worst:
+    excess = np.abs(_physical_moment(record, joint)) - bound
+    return worst(excess[..., None], record.time, LEGS, (JOINTS[joint],))
+
+
+def _rate_excess(record: Record, joint: int, bound: float) -> Worst:
+    """Largest |m(t2) - m(t1)| - bound (t2 - t1) over all pairs of instants of the periodic stride.
+
+    Two strides in a row hold every pair; for each t2 the worst t1 is a running extreme of
+    m -+ bound t, so no derivative is taken and a jump counts in full.
+    """
+    moment = np.tile(_physical_moment(record, joint), (2, 1))
+    time = np.concatenate([record.time, record.time + record.stride_time])
+    ramp = bound * time[:, None]
+    rise = (moment - ramp) - np.minimum.accumulate(moment - ramp)
+    fall = np.maximum.accumulate(moment + ramp) - (moment + ramp)
+    excess = np.maximum(rise, fall)[..., None]
+    return worst(excess, np.tile(record.time, 2), LEGS, (JOINTS[joint],))
+
+
+def pressure_line(record: Record) -> AuditLine:
+    """Centre of pressure inside the interval of its phase while the foot is loaded."""
+    body = record.body
+    heel, metatarsal, toe = (p.position.real for p in (body.heel, body.metatarsal, body.toe_tip))
+    phase, pressure = record.phase, record.loads.pressure
+    contacts = [phase == p for p in (HEEL, FLAT, FOREFOOT, TOE)]
+    low = np.select(contacts, [heel, heel, metatarsal, toe])
+    high = np.select(contacts, [heel, metatarsal, toe, toe])
+    loaded = (record.loads.reaction.imag > LOADED * record.walker.weight) & (phase > SWING)
+    outside = np.where(loaded, np.maximum(low - pressure, pressure - high), 0.0)
+    return residuals.CENTER_OF_PRESSURE.judged(worst(outside, record.time, LEGS))

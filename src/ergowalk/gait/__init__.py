@@ -1,0 +1,1 @@
+"""Gait: contact phases, rhythm and the symmetry of the legs."""

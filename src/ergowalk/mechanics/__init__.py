@@ -1,0 +1,1 @@
+"""Mechanics of the nine-link walker: kinematics, two-link foot, dynamics (1), energy."""

@@ -1,0 +1,236 @@
+"""Figures 3-10: one curve of leg 1 over the stride, against the human mean and SD."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from numpy.typing import NDArray
+
+from ergowalk.comparison import (
+    COMPARED,
+    ComparedSignal,
+    StrideCurves,
+    curve,
+    stride_curves,
+    stride_fraction,
+)
+from ergowalk.corridors import SIGNALS, HumanGait
+from ergowalk.plots import style
+
+Array = NDArray[np.float64]
+
+_DENSE = np.linspace(0.0, 1.0, 401)
+_DIFFERENT = 0.05  # deg: from here on the problem's corridor is not the band of 1 SD
+
+
+@dataclass(frozen=True)
+class PhaseSpan:
+    """A contact phase of leg 1 between two stride fractions."""
+
+    name: str
+    start: float
+    end: float
+
+
+@dataclass(frozen=True)
+class Material:
+    """What the curves of a gait are drawn from; ``corridors`` by signal, where they are drawn."""
+
+    gait: StrideCurves
+    human: HumanGait
+    corridors: dict[str, tuple[Array, Array]]
+    phases: tuple[PhaseSpan, ...]
+
+    @classmethod
+    def of(cls, dataset: xr.Dataset, human: HumanGait) -> Material:
+        """The material of a gait file.
+
+        Raises
+        ------
+        GaitFileError
+            If a variable is missing or not finite.
+        """
+        found = {signal.name: problem_corridor(dataset, signal, human) for signal in COMPARED}
+        return cls(
+            stride_curves(dataset),
+            human,
+            {name: bounds for name, bounds in found.items() if bounds is not None},
+            contact_phases(dataset),
+        )
+
+
+def draw_curve(axes: Axes, material: Material, signal: ComparedSignal, small: bool = False) -> None:
+    """Draw one curve: human band and mean, corridor of the problem, optimum, phases of leg 1.
+
+    ``small`` axes have smaller phase names and leave the signal's name to the title.
+    """
+    if signal.name in material.human.curves:
+        band = material.human.corridor(signal.name)
+        mean, half = band.mean(_DENSE), np.maximum(band.sd(_DENSE), 0.0)
+        low, high = mean - half, mean + half
+        axes.fill_between(100 * _DENSE, low, high, color=style.BAND, linewidth=0, zorder=1)
+        axes.plot(100 * _DENSE, mean, "--", color=style.HUMAN, linewidth=1.1, zorder=3)
+    percent = 100 * material.gait.fraction
+    for bound in material.corridors.get(signal.name, ()):
+        axes.plot(percent, bound, color=style.CORRIDOR, linewidth=0.8, zorder=2.5)
+    values = material.gait.values[signal.name]
+    width = 1.4 if small else 1.8
+    axes.plot(percent, values, color=style.GAIT, linewidth=width, zorder=4)
+    axes.axhline(0.0, color="black", linewidth=0.5, zorder=2)
+    axes.set_xlim(0, 100)
+    axes.set_xticks(range(0, 101, 20))
+    axes.set_xlabel("stride of leg 1 [%]")
+    axes.set_ylabel(axis_label(signal, with_name=not small))
+    _mark_phases(axes, material.phases, 6.5 if small else 7.5)
+
+
+def axis_label(signal: ComparedSignal, with_name: bool = True) -> str:
+    """What the ordinate shows, its unit, and what its positive sign means."""
+    name = f"{SIGNALS[signal.name].label} " if with_name else ""
+    return f"{name}{plain(signal.symbol)} [{signal.unit}], {signal.positive} +"
+
+
+def plain(symbol: str) -> str:
+    """A symbol such as "mu^o" or "R_x/M" in single characters.
+
+    Typeset formulas become one letter after the other in an SVG file, which no search finds.
+    """
+    for written, character in _CHARACTERS.items():
+        symbol = symbol.replace(written, character)
+    return symbol
+
+
+_CHARACTERS = {"mu": "\N{GREEK SMALL LETTER MU}", "^o": "ᵒ", "^k": "ᵏ", "^a": "ᵃ", "_": ""}
+
+
+def problem_corridor(
+    dataset: xr.Dataset, signal: ComparedSignal, human: HumanGait
+) -> tuple[Array, Array] | None:
+    """Lower and upper bound [deg] of an angle where they are not the band of 1 SD.
+
+    None for signals without a corridor. Bounds are (n,), NaN where there is none.
+    """
+    if signal.unit != "deg" or "corridor_lower" not in dataset:
+        return None
+    joint = signal.name.split("_")[0]
+    lower, upper = (
+        np.degrees(curve(dataset, f"corridor_{side}", {"leg": 1, "joint": joint}, gaps=True))
+        for side in ("lower", "upper")
+    )
+    if np.all(np.isnan(lower)) and np.all(np.isnan(upper)):
+        return None
+    if signal.name in human.curves:
+        band = human.corridor(signal.name)
+        s = stride_fraction(dataset)
+        off = [np.abs(lower - band.lower(s)), np.abs(upper - band.upper(s))]
+        if np.nanmax(off) <= _DIFFERENT:
+            return None
+    return lower, upper
+
+
+def contact_phases(dataset: xr.Dataset) -> tuple[PhaseSpan, ...]:
+    """The contact phases of leg 1 in time order; those without duration are left out.
+
+    Such is the next heel contact, where the file has it as its last instant.
+
+    Raises
+    ------
+    GaitFileError
+        If ``contact_phase`` is missing.
+    """
+    s = stride_fraction(dataset)
+    codes = curve(dataset, "contact_phase", {"leg": 1})
+    names = _phase_names(dataset)
+    change = np.flatnonzero(np.diff(codes)) + 1
+    starts = np.array([0, *change])
+    edges = [*s[starts], 1.0]
+    spans = (
+        PhaseSpan(names.get(int(code), "?"), float(a), float(b))
+        for code, a, b in zip(codes[starts], edges[:-1], edges[1:], strict=True)
+    )
+    return tuple(span for span in spans if span.end > span.start)
+
+
+def _phase_names(dataset: xr.Dataset) -> dict[int, str]:
+    attributes = dataset["contact_phase"].attrs
+    meanings = attributes.get("flag_meanings", "swing heel flat forefoot toe")
+    names = meanings.split() if isinstance(meanings, str) else [str(name) for name in meanings]
+    values = np.atleast_1d(attributes.get("flag_values", np.arange(len(names))))
+    return {int(value): name for value, name in zip(values, names, strict=False)}
+
+
+def _mark_phases(axes: Axes, phases: tuple[PhaseSpan, ...], fontsize: float) -> None:
+    """Thin lines at the phase changes, and the names of the phases above the axes."""
+    for span in phases[1:]:
+        axes.axvline(100 * span.start, color=style.FAINT, linewidth=0.6, zorder=1.5)
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    across = axes.get_position().width * figure.get_size_inches()[0]
+    # a letter of DejaVu Sans is about 0.6 em wide; one letter's room keeps neighbours apart
+    widths = [0.6 * fontsize / 72 * (len(span.name) + 1) / across for span in phases]
+    centres = spread([(span.start + span.end) / 2 for span in phases], widths)
+    for span, centre in zip(phases, centres, strict=True):
+        axes.text(
+            centre,
+            1.015,
+            span.name,
+            transform=axes.transAxes,
+            ha="center",
+            va="bottom",
+            fontsize=fontsize,
+            color="#606060",
+        )
+
+
+def spread(centres: list[float], widths: list[float]) -> list[float]:
+    """Move labels on the unit interval as little as needed for none to overlap its neighbour.
+
+    Labels keep their order. Those that collide are joined to a block around their mean place
+    (the least-squares answer), which stays inside the interval if there is room for it.
+    """
+    blocks: list[tuple[float, float, int]] = []  # mean centre, width, labels
+    for centre, width in zip(centres, widths, strict=True):
+        block = _inside(centre, width, 1)
+        while blocks and _overlap(blocks[-1], block):
+            (a, wa, na), (b, wb, nb) = blocks.pop(), block
+            block = _inside((na * a + nb * b) / (na + nb), wa + wb, na + nb)
+        blocks.append(block)
+    placed, rest = [], iter(widths)
+    for centre, width, count in blocks:
+        left = centre - width / 2
+        for _ in range(count):
+            own = next(rest)
+            placed.append(left + own / 2)
+            left += own
+    return placed
+
+
+def _inside(centre: float, width: float, count: int) -> tuple[float, float, int]:
+    return max(width / 2, min(centre, 1 - width / 2)), width, count
+
+
+def _overlap(left: tuple[float, float, int], right: tuple[float, float, int]) -> bool:
+    return left[0] + left[1] / 2 > right[0] - right[1] / 2
+
+
+def curve_keys(material: Material, *signals: ComparedSignal) -> list[Line2D | Patch]:
+    """Legend entries of what is drawn of these signals."""
+    names = [signal.name for signal in signals]
+    keys: list[Line2D | Patch] = [
+        Line2D([], [], color=style.GAIT, linewidth=1.8, label="optimum, leg 1")
+    ]
+    if any(name in material.human.curves for name in names):
+        name = material.human.name.replace("\\", "/").rsplit("/", 1)[-1]
+        label = f"human mean ({name if len(name) <= 24 else name[:23] + '…'})"
+        keys += [
+            Line2D([], [], color=style.HUMAN, linewidth=1.1, linestyle="--", label=label),
+            Patch(color=style.BAND, linewidth=0, label="mean ± 1 SD"),
+        ]
+    if any(name in material.corridors for name in names):
+        keys.append(Line2D([], [], color=style.CORRIDOR, linewidth=0.8, label="corridor"))
+    return keys

@@ -1,0 +1,25 @@
+"""Problem A: givens, constraints (2)-(9), objective (10), physical limits, presets."""
+
+from ergowalk.problem.gait_problem import (
+    JOINTS,
+    Corridors,
+    DoubleSupport,
+    GaitProblem,
+    JointBounds,
+    Limits,
+    RhythmBounds,
+)
+from ergowalk.problem.presets import DEFAULT_PRESET, PRESETS, preset
+
+__all__ = [
+    "DEFAULT_PRESET",
+    "JOINTS",
+    "PRESETS",
+    "Corridors",
+    "DoubleSupport",
+    "GaitProblem",
+    "JointBounds",
+    "Limits",
+    "RhythmBounds",
+    "preset",
+]

@@ -1,0 +1,300 @@
+"""Problem A as a value: what is given, what is free, and between which bounds."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Literal, Self
+
+from pydantic import Field, field_validator, model_validator
+
+from ergowalk.body import Body
+from ergowalk.corridors import ANGLES, Corridor, HumanGait, human_gait
+from ergowalk.errors import CorridorError, ProblemError
+from ergowalk.gait.rhythm import PRINTED_RHYTHM, PhaseOrder, Rhythm
+from ergowalk.values import FiniteFloat, PositiveFloat, Value, invalid
+
+Off = Literal["off"]
+Bound = PositiveFloat | Off
+Instant = FiniteFloat | tuple[FiniteFloat, FiniteFloat]
+
+JOINTS = ("hip", "knee", "ankle", "metatarsal")
+"""The four joints of a leg, in the order of (10)."""
+
+
+class DoubleSupport(StrEnum):
+    """How the load is shared while both feet are on the ground."""
+
+    OPTIMAL = "optimal"
+    LINEAR = "linear"
+
+
+class RhythmBounds(Value):
+    """Rhythm parameters of leg 1 as fractions of T: one number fixes, a pair bounds (3)."""
+
+    _error = ProblemError
+
+    heel_end: Instant = Field(
+        default=(0.02, 0.20), description="end of rotation over the heel, tau^h, fraction of T"
+    )
+    heel_off: Instant = Field(
+        default=(0.05, 0.45), description="heel-off, tau^m, fraction of T"
+    )
+    toe_off: Instant = Field(
+        default=(0.52, 0.66), description="toe-off, tau^s, fraction of T (after 0.5)"
+    )
+    order: PhaseOrder | Literal["best"] = Field(
+        default="best",
+        description="'toe-off-first', 'flat-first' (other toe-off before or after foot-flat), "
+        "or 'best' to try both",
+    )
+
+    def bounds(self, name: str) -> tuple[float, float]:
+        """Lower and upper bound of a parameter; equal where it is fixed."""
+        value: Instant = getattr(self, name)
+        return value if isinstance(value, tuple) else (value, value)
+
+    @property
+    def fixed(self) -> bool:
+        """Whether nothing is free."""
+        return all(low == high for low, high in map(self.bounds, ("heel_end", "heel_off", "toe_off")))
+
+    def start(self) -> Rhythm:
+        """The printed rhythm, moved inside the bounds and in order (3): where the search begins."""
+
+        def inside(name: str) -> float:
+            low, high = self.bounds(name)
+            printed: float = getattr(PRINTED_RHYTHM, name)
+            return min(max(printed, low), high)
+
+        heel_off = inside("heel_off")
+        if max(inside("heel_end"), inside("toe_off") - 0.5) >= heel_off:
+            heel_off = self.bounds("heel_off")[1]
+
+        def before_heel_off(name: str, shift: float = 0.0) -> float:
+            instant = inside(name)
+            if instant - shift < heel_off:
+                return instant
+            return (self.bounds(name)[0] + heel_off + shift) / 2
+
+        return Rhythm(before_heel_off("heel_end"), heel_off, before_heel_off("toe_off", 0.5))
+
+    def orders(self) -> tuple[PhaseOrder, ...]:
+        """The phase orders to try: those that the bounds leave room for."""
+        (h_low, h_high), (s_low, s_high) = self.bounds("heel_end"), self.bounds("toe_off")
+        possible = {
+            PhaseOrder.TOE_OFF_FIRST: s_low - 0.5 <= h_high,
+            PhaseOrder.FLAT_FIRST: h_low < s_high - 0.5,
+        }
+        if self.order != "best":
+            return (PhaseOrder(self.order),)
+        return tuple(order for order, room in possible.items() if room)
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Self:
+        for name, (first, last) in _RANGES.items():
+            low, high = self.bounds(name)
+            if not first < low <= high < last:
+                raise invalid(
+                    name,
+                    getattr(self, name),
+                    f"must lie between {first} and {last} (exclusive), lower bound first",
+                    "give a fraction of the stride time, or a pair of them",
+                )
+        if self.bounds("heel_end")[0] >= self.bounds("heel_off")[1]:
+            raise invalid(
+                "heel_end",
+                self.heel_end,
+                f"foot-flat must come before heel-off at {self.heel_off} (3)",
+                "lower heel_end or raise heel_off",
+            )
+        if self.bounds("toe_off")[0] - 0.5 >= self.bounds("heel_off")[1]:
+            raise invalid(
+                "toe_off",
+                self.toe_off,
+                "the other leg must leave the ground (toe_off - 0.5) before heel-off at "
+                f"{self.heel_off} (3)",
+                "lower toe_off or raise heel_off",
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _order_possible(self) -> Self:
+        h, s = self.bounds("heel_end"), self.bounds("toe_off")
+        late_flat = self.order == PhaseOrder.TOE_OFF_FIRST and s[0] - 0.5 > h[1]
+        early_flat = self.order == PhaseOrder.FLAT_FIRST and h[0] >= s[1] - 0.5
+        if late_flat or early_flat:
+            raise invalid(
+                "order",
+                str(self.order),
+                f"contradicts heel_end {self.heel_end} and toe_off - 0.5",
+                "choose the other order, or 'best'",
+            )
+        return self
+
+
+_RANGES = {"heel_end": (0.0, 0.5), "heel_off": (0.0, 0.5), "toe_off": (0.5, 1.0)}
+
+
+class JointBounds(Value):
+    """One bound per joint, or "off"."""
+
+    _error = ProblemError
+
+    hip: Bound = Field(default="off", description="bound at the hip, or 'off'")
+    knee: Bound = Field(default="off", description="bound at the knee, or 'off'")
+    ankle: Bound = Field(default="off", description="bound at the ankle, or 'off'")
+    metatarsal: Bound = Field(
+        default="off", description="bound at the metatarsal joint, or 'off'"
+    )
+
+    def of(self, joint: str) -> float | None:
+        """The bound of a joint, None where it is off."""
+        value = getattr(self, joint)
+        return None if value == "off" else value
+
+
+class Limits(Value):
+    """Physical limits beyond the paper's constraints; each can be switched off.
+
+    As printed, Problem A has no smooth minimiser: work-optimal walking is impulsive, and with
+    finer meshes moments and reactions grow into spikes while E keeps falling. Only a bound or a
+    cost on the rate of the joint moments makes E converge.
+    """
+
+    _error = ProblemError
+
+    vertical_reaction_body_weights: Bound = Field(
+        default=1.3,
+        description="cap on each leg's vertical reaction in body weights, or 'off'; a person "
+        "walking at natural cadence peaks near 1.1",
+    )
+    friction_coefficient: Bound = Field(
+        default=0.6,
+        description="friction cone |R_x| <= mu R_y, or 'off'; dry floors give 0.5 to 0.8",
+    )
+    moment_rate_nm_per_kg_s: JointBounds = Field(
+        default=JointBounds(hip=25.0, knee=25.0, ankle=25.0),
+        description="bounds on the rate of the joint moments, N m/(kg s); muscles need time, "
+        "and Winter's mean moments peak near 17",
+    )
+    moment_nm_per_kg: JointBounds = Field(
+        default=JointBounds(), description="bounds on the joint moments, N m/kg: strength"
+    )
+    moment_rate_cost_s3_per_m2: Bound = Field(
+        default="off",
+        description="weight of the stride integral of squared moment rates per kg, times "
+        "M/(2L), added to E; a smooth alternative to the bound",
+    )
+
+    @property
+    def bounds_moment_rate(self) -> bool:
+        """Whether hip, knee and ankle have a bound or a cost that makes the problem well posed."""
+        return self.moment_rate_cost_s3_per_m2 != "off" or all(
+            self.moment_rate_nm_per_kg_s.of(joint) is not None for joint in ANGLES
+        )
+
+    def sentence(self) -> str:
+        """The limits in words, to stand beside every E."""
+        parts = []
+        if self.vertical_reaction_body_weights != "off":
+            parts.append(f"R_y <= {self.vertical_reaction_body_weights:g} body weights")
+        if self.friction_coefficient != "off":
+            parts.append(f"|R_x| <= {self.friction_coefficient:g} R_y")
+        parts += _joint_sentence("moment rate", self.moment_rate_nm_per_kg_s, "N m/(kg s)")
+        parts += _joint_sentence("moment", self.moment_nm_per_kg, "N m/kg")
+        if self.moment_rate_cost_s3_per_m2 != "off":
+            parts.append(f"moment-rate cost {self.moment_rate_cost_s3_per_m2:g} s3/m2")
+        return ", ".join(parts) or "no limits"
+
+
+def _joint_sentence(what: str, bounds: JointBounds, unit: str) -> list[str]:
+    by_value: dict[float, list[str]] = {}
+    for joint in JOINTS:
+        value = bounds.of(joint)
+        if value is not None:
+            by_value.setdefault(value, []).append(joint)
+    return [f"{what} <= {v:g} {unit} at {', '.join(j)}" for v, j in by_value.items()]
+
+
+class Corridors(Value):
+    """Which human data bound the joint angles (6), and how widely."""
+
+    _error = CorridorError
+
+    source: str = Field(
+        default="winter-natural",
+        description="'winter-slow', 'winter-natural', 'winter-fast', or a CSV file",
+    )
+    width_sd: PositiveFloat = Field(
+        default=1.0, description="half width of the corridors in standard deviations"
+    )
+
+
+class GaitProblem(Value):
+    """Problem A: the cheapest periodic walk of a body at a step length and a stride time.
+
+    Raises
+    ------
+    ProblemError, BodyError, CorridorError
+        For fields out of range or contradicting each other, and for a step that the legs cannot
+        reach.
+    """
+
+    _error = ProblemError
+
+    name: str = Field(default="custom", description="a name for the problem")
+    step_length_m: PositiveFloat = Field(description="step length L, half the stride, in m")
+    stride_time_s: PositiveFloat = Field(
+        description="stride time T (double step) as a positive number in s"
+    )
+    double_support: DoubleSupport = Field(
+        default=DoubleSupport.OPTIMAL,
+        description="'optimal' (sharing of load left to the optimiser) or 'linear' (12)",
+    )
+    body: Body = Field(default=Body(), description="the walker")
+    corridors: Corridors = Field(default=Corridors(), description="human corridors (6)")
+    rhythm: RhythmBounds = Field(default=RhythmBounds(), description="contact instants (3)")
+    limits: Limits = Field(default=Limits(), description="physical limits")
+    folder: Path | None = Field(
+        default=None, exclude=True, description="where relative file names start"
+    )
+
+    def human(self) -> HumanGait:
+        """The human data that the corridors come from."""
+        return human_gait(self.corridors.source, self.folder)
+
+    def angle_corridors(self) -> dict[str, Corridor]:
+        """Corridors of hip, knee and ankle angle in radians (6)."""
+        human, width = self.human(), self.corridors.width_sd
+        return {joint: human.angle_corridor(joint, width) for joint in ANGLES}
+
+    @field_validator("body")
+    @classmethod
+    def _legs_equal(cls, body: Body) -> Body:
+        if not body.legs_equal:
+            raise invalid(
+                "legs",
+                "legs differ",
+                "both legs must be equal: the half stride is solved and mirrored",
+                "give one number for each leg parameter",
+            )
+        return body
+
+    @model_validator(mode="after")
+    def _step_reachable(self) -> Self:
+        leg = self.body.leg(0)
+        # In double support the trailing toe tip and the leading heel are L - (l_h + l_m) apart,
+        # and each is at most the stretched leg away from the hip, which is above the ground.
+        foot = leg.heel_to_metatarsal + leg.toe_length
+        trailing = leg.thigh_length + leg.shank_length + leg.ankle_to_metatarsal + leg.toe_length
+        leading = leg.thigh_length + leg.shank_length + leg.heel_to_ankle
+        longest = trailing + leading + foot
+        if self.step_length_m >= longest:
+            raise invalid(
+                "step_length_m",
+                self.step_length_m,
+                f"out of reach: these legs span at most {longest:.2f} m between heel contacts",
+                "shorten the step or lengthen the legs",
+            )
+        return self

@@ -1,0 +1,135 @@
+"""The answer: a labelled dataset that saves, loads and measures itself."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import secrets
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import xarray as xr
+
+from ergowalk.errors import GaitFileError, OutputError
+from ergowalk.gait.rhythm import Rhythm
+from ergowalk.problem import GaitProblem
+from ergowalk.problem.files import problem_from_toml
+from ergowalk.solution.energy import joint_energies
+
+if TYPE_CHECKING:
+    from ergowalk.audit import AuditReport
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """A gait: every curve of the stride, and how it was found.
+
+    ``dataset`` is exactly the gait file; all figures here are computed from its curves.
+    """
+
+    dataset: xr.Dataset
+
+    @property
+    def status(self) -> str:
+        """One sentence on how the solver ended."""
+        return str(self.dataset.attrs["solver_status"])
+
+    @property
+    def acceptable(self) -> bool:
+        """Whether the solver converged and every line of the audit held when it was written."""
+        return bool(self.dataset.attrs["acceptable"])
+
+    @property
+    def energy_per_metre(self) -> float:
+        """E of (10) [J/m] on the dense grid, as stored."""
+        return float(self.dataset.attrs["energy_per_metre"])
+
+    @property
+    def rhythm(self) -> Rhythm:
+        """Contact instants of leg 1 as fractions of T."""
+        return Rhythm(**json.loads(self.dataset.attrs["rhythm"]))
+
+    @property
+    def mesh_history(self) -> list[dict[str, Any]]:
+        """One record per mesh that was solved: elements, energy_per_metre, iterations, ..."""
+        history: list[dict[str, Any]] = json.loads(self.dataset.attrs["mesh_history"])
+        return history
+
+    @cached_property
+    def problem(self) -> GaitProblem:
+        """The problem that this gait answers."""
+        return problem_from_toml(str(self.dataset.attrs["problem"]))
+
+    @cached_property
+    def energy_by_joint(self) -> dict[str, float]:
+        """Part of E of each joint, both legs together [J/m]."""
+        distance = 2 * float(self.dataset.attrs["step_length"])
+        return {j: e / distance for j, e in joint_energies(self.dataset).items()}
+
+    def audit(self) -> AuditReport:
+        """Every residual of the audit, recomputed from the curves by independent code."""
+        from ergowalk.audit import audit
+
+        return audit(self.dataset)
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write the gait as NetCDF-4; an interrupted call leaves the old file or none.
+
+        Raises
+        ------
+        OutputError
+            If the place cannot be written.
+        """
+        target = Path(path)
+        draft = target.parent / f".gait-{secrets.token_hex(8)}.nc"
+        try:
+            draft.touch(exist_ok=False)  # the netCDF library does not say what is wrong
+            self.dataset.to_netcdf(draft, engine="netcdf4", format="NETCDF4")
+            os.replace(draft, target)
+        except (OSError, RuntimeError, ValueError) as error:  # full disk; null byte in the name
+            raise _unwritable(target, error) from None
+        finally:
+            with contextlib.suppress(OSError):  # never written, or renamed
+                draft.unlink()
+        return target
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Solution:
+        """Read a gait file.
+
+        Raises
+        ------
+        GaitFileError
+            If it is no NetCDF file or lacks a variable or an attribute.
+        """
+        from ergowalk.audit import check_readable
+
+        source = Path(path)
+        try:
+            with xr.open_dataset(source, engine="netcdf4") as stored:
+                dataset = stored.load()
+        except FileNotFoundError:
+            raise GaitFileError(
+                "no such file", "give the path of a gait.nc", file=str(source)
+            ) from None
+        except (OSError, ValueError, RuntimeError) as error:
+            detail = getattr(error, "strerror", None) or "not readable"
+            raise GaitFileError(
+                f"is not a NetCDF file ({detail})",
+                "give a gait.nc written by 'ergowalk solve'",
+                file=str(source),
+            ) from None
+        check_readable(dataset, str(source))
+        return cls(dataset)
+
+
+def _unwritable(target: Path, error: Exception) -> OutputError:
+    reason = getattr(error, "strerror", None) or str(error)
+    return OutputError(
+        f"cannot be written ({reason})",
+        "choose another place or its permissions",
+        file=str(target),
+    )

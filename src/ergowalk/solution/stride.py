@@ -1,0 +1,139 @@
+"""The stride as a labelled dataset, from the motion of half a stride."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from ergowalk.gait.loads import Sharing, inverse_dynamics
+from ergowalk.gait.rhythm import Contact
+from ergowalk.mechanics.kinematics import BodyMotion, joint_angles
+from ergowalk.problem import GaitProblem
+from ergowalk.problem.objective import eq10_joint_powers
+from ergowalk.quantities import AXES, JOINTS, LEGS, QUANTITIES, SEGMENTS
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A smooth piece of the half stride: instants [s], contacts, motion, sharing of the load.
+
+    Arrays (n,), both ends included.
+    """
+
+    time: Array
+    contacts: tuple[Contact, Contact]
+    motion: BodyMotion
+    sharing: Sharing
+
+
+def stride_dataset(problem: GaitProblem, pieces: Sequence[Piece]) -> xr.Dataset:
+    """All variables of a gait file for [0, T], without global attributes.
+
+    The second half repeats the first with the legs exchanged, one step further on.
+    """
+    halves = [_half_variables(problem, piece) for piece in pieces]
+    first = {name: np.concatenate([h[name] for h in halves]) for name in halves[0]}
+    second = _half_a_stride_later(problem, first)
+    values = {name: np.concatenate([first[name], second[name]]) for name in first}
+    values |= _corridors(problem, values["time"])
+    return _labelled(values)
+
+
+def _half_variables(problem: GaitProblem, piece: Piece) -> dict[str, Array]:
+    body, motion = problem.body, piece.motion
+    loads = inverse_dynamics(body, motion, piece.contacts, piece.sharing)
+    segments = [[getattr(leg, s) for s in SEGMENTS] for leg in motion.legs]
+
+    def by_leg(kind: str) -> Array:
+        return _stack([[getattr(r, kind) for r in leg] for leg in segments])
+
+    angles = [
+        joint_angles(body.leg(i), motion.trunk.angle, *(r.angle for r in segments[i]))
+        for i in (0, 1)
+    ]
+    powers = [eq10_joint_powers(loads.moments[i], motion.trunk, motion.legs[i]) for i in (0, 1)]
+    moments = [[getattr(m, j) for j in JOINTS] for m in loads.moments]
+    contacts = [np.full(piece.time.shape, int(contact)) for contact in piece.contacts]
+    return {
+        "time": piece.time,
+        "hip_position": _stack(motion.hip.position),
+        "hip_velocity": _stack(motion.hip.velocity),
+        "hip_acceleration": _stack(motion.hip.acceleration),
+        "trunk_angle": motion.trunk.angle,
+        "trunk_angular_velocity": motion.trunk.rate,
+        "trunk_angular_acceleration": motion.trunk.acceleration,
+        "segment_angle": by_leg("angle"),
+        "segment_angular_velocity": by_leg("rate"),
+        "segment_angular_acceleration": by_leg("acceleration"),
+        "joint_angle": _stack(angles),
+        "joint_moment": _stack(moments),
+        "joint_power": _stack(powers),
+        "ground_reaction_force": _stack(loads.reactions),
+        "center_of_pressure": _stack(loads.pressures),
+        "contact_phase": np.stack(contacts, axis=-1),
+    }
+
+
+def _stack(parts: Any) -> Array:
+    """Nested sequences of (n,) arrays as one array with time first."""
+    if isinstance(parts, np.ndarray):
+        return parts
+    return np.stack([_stack(p) for p in parts], axis=1)
+
+
+def _half_a_stride_later(problem: GaitProblem, first: dict[str, Array]) -> dict[str, Array]:
+    second = {}
+    for name, values in first.items():
+        dims = QUANTITIES[name].dims
+        second[name] = values[:, ::-1] if "leg" in dims else values.copy()
+    second["time"] = first["time"] + problem.stride_time_s / 2
+    second["hip_position"] = first["hip_position"] + np.array([problem.step_length_m, 0.0])
+    second["center_of_pressure"] = second["center_of_pressure"] + problem.step_length_m
+    return second
+
+
+def _corridors(problem: GaitProblem, time: Array) -> dict[str, Array]:
+    """Bounds of (6); leg 2 is half a stride later; the metatarsal joint has none."""
+    lower = np.full((len(time), 2, len(JOINTS)), np.nan)
+    upper = lower.copy()
+    fraction = time / problem.stride_time_s
+    for j, (_, corridor) in enumerate(problem.angle_corridors().items()):
+        for leg, shift in enumerate((0.0, 0.5)):
+            lower[:, leg, j] = corridor.lower(fraction + shift)
+            upper[:, leg, j] = corridor.upper(fraction + shift)
+    return {"corridor_lower": lower, "corridor_upper": upper}
+
+
+def _labelled(values: dict[str, Array]) -> xr.Dataset:
+    variables = {}
+    for name, quantity in QUANTITIES.items():
+        if name == "time":
+            continue
+        attributes: dict[str, Any] = {
+            "units": quantity.units,
+            "long_name": quantity.long_name,
+            "symbol": quantity.symbol,
+        }
+        data = values[name]
+        if name == "contact_phase":
+            data = data.astype(np.int8)
+            attributes["flag_values"] = np.array([int(c) for c in Contact], dtype=np.int8)
+            attributes["flag_meanings"] = " ".join(c.name.lower() for c in Contact)
+        variables[name] = (quantity.dims, data, attributes)
+    time = QUANTITIES["time"]
+    meta = {"units": time.units, "long_name": time.long_name, "symbol": time.symbol}
+    coordinates = {
+        "time": ("time", values["time"], meta),
+        "leg": ("leg", np.array(LEGS, dtype=np.int32)),
+        "axis": ("axis", np.array(AXES, dtype=object)),
+        "segment": ("segment", np.array(SEGMENTS, dtype=object)),
+        "joint": ("joint", np.array(JOINTS, dtype=object)),
+    }
+    return xr.Dataset(variables, coords=coordinates)

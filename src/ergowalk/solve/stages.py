@@ -1,0 +1,184 @@
+"""The stages of a collocation solve: human mean curves, coarse mesh, free rhythm, fine mesh."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ergowalk.gait.rhythm import PhaseOrder
+from ergowalk.problem import GaitProblem
+from ergowalk.problem.objective import energy_per_metre
+from ergowalk.solution.progress import Progress, Report
+from ergowalk.solvers.ipopt import Ipopt, Minimum
+from ergowalk.transcription.collocation import Collocation, Guess, PhaseKernel, Trajectory
+from ergowalk.transcription.guess import (
+    human_guess,
+    loaded_guess,
+    starting_rhythm,
+    starting_times,
+)
+from ergowalk.transcription.mesh import walking_mesh
+from ergowalk.transcription.phases import PhasedProblem
+from ergowalk.transcription.walking import (
+    Smoothing,
+    Walker,
+    kinematic_problem,
+    walking_problem,
+)
+
+COARSE_POINTS, FINE_POINTS = 2, 3
+"""Gauss points per element while searching, and for the reported gait."""
+
+
+@dataclass
+class Effort:
+    """What the stages have cost so far: iterations, CPU seconds of building and of solving."""
+
+    iterations: int = 0
+    build_time: float = 0.0
+    solve_time: float = 0.0
+    began: float = field(default_factory=time.monotonic)
+
+    def add(self, minimum: Minimum) -> None:
+        """Count one run of the solver."""
+        self.iterations += minimum.iterations
+        self.build_time += minimum.build_time
+        self.solve_time += minimum.solve_time
+
+
+@dataclass(frozen=True)
+class StageResult:
+    """The curves at the end of a stage."""
+
+    collocation: Collocation
+    trajectory: Trajectory
+    minimum: Minimum
+    energy_at_nodes: float
+
+    @property
+    def elements(self) -> int:
+        """Elements of the half stride."""
+        return self.collocation.elements
+
+    @property
+    def points(self) -> int:
+        """Gauss points of each element."""
+        return self.collocation.scheme.m
+
+
+class OrderSearch:
+    """All stages for one phase order of one problem."""
+
+    def __init__(
+        self,
+        problem: GaitProblem,
+        order: PhaseOrder,
+        smoothing: Smoothing,
+        effort: Effort,
+        report: Report | None,
+    ) -> None:
+        self.problem, self.order, self.effort, self.report = problem, order, effort, report
+        began = time.process_time()
+        self.walker = Walker(problem, smoothing)
+        self.phased = walking_problem(problem, order, smoothing)
+        self.kernels: dict[tuple[str, int], PhaseKernel] = {}
+        effort.build_time += time.process_time() - began
+
+    def fit(self) -> Trajectory:
+        """The motion nearest to the human means that stands on the ground, rhythm as printed."""
+        times = starting_times(self.problem, starting_rhythm(self.problem, self.order))
+        phased = with_times(kinematic_problem(self.problem, self.order), times)
+        guess = human_guess(self.walker, self.order, times)
+        return self._run("fit to human means", phased, 0.45, 2, guess, times, Ipopt()).trajectory
+
+    def fixed_rhythm(self, fit: Trajectory, level: float) -> StageResult:
+        """First dynamics: from the fit, rhythm held."""
+        guess = loaded_guess(self.walker, self.order, fit)
+        phased = with_times(self.phased, fit.times)
+        free = not self.problem.rhythm.fixed
+        solver = Ipopt(tolerance=1e-4 if free else 1e-6)
+        return self._run("rhythm held", phased, level, COARSE_POINTS, guess, fit.times, solver)
+
+    def free_rhythm(self, start: StageResult, level: float) -> StageResult:
+        """All switching times free."""
+        curves = start.trajectory
+        solver = Ipopt(tolerance=1e-5)
+        return self._run(
+            "rhythm free", self.phased, level, COARSE_POINTS, curves.as_guess(), curves.times, solver
+        )
+
+    def refined(self, start: StageResult, level: float, points: int = FINE_POINTS) -> StageResult:
+        """The same gait on another mesh.
+
+        With as many Gauss points as before the multipliers come along, and the solver starts
+        where it stopped.
+        """
+        curves, before = start.trajectory, None
+        solver = Ipopt(tolerance=1e-6)
+        if start.points == points:
+            before, solver = start, replace(solver, strategy="monotone", barrier_start=1e-5)
+        stage = f"mesh level {level:g}"
+        return self._run(
+            stage, self.phased, level, points, curves.as_guess(), curves.times, solver, before
+        )
+
+    def _run(
+        self,
+        stage: str,
+        phased: PhasedProblem,
+        level: float,
+        points: int,
+        guess: Guess,
+        times: Mapping[str, float],
+        solver: Ipopt,
+        before: StageResult | None = None,
+    ) -> StageResult:
+        began = time.process_time()
+        mesh = walking_mesh(self.order, times, self.problem.stride_time_s, level)
+        collocation = Collocation(phased, mesh, points, self.kernels)
+        programme = collocation.programme
+        start = collocation.pack(guess, times)
+        _ = programme.oracle
+        self.effort.build_time += time.process_time() - began
+        multipliers = None
+        if before is not None:
+            last = before.minimum
+            multipliers = collocation.carry_multipliers(
+                before.collocation, last.variable_multipliers, last.row_multipliers
+            )
+        monitor = self._monitor(stage, collocation.elements)
+        minimum = solver.minimise(programme, start, monitor, multipliers)
+        self.effort.add(minimum)
+        return StageResult(
+            collocation, collocation.unpack(minimum.x), minimum, self._energy(minimum.objective)
+        )
+
+    def _energy(self, objective: float) -> float:
+        energy: float = energy_per_metre(
+            objective * self.walker.mass, self.problem.step_length_m
+        )
+        return energy
+
+    def _monitor(self, stage: str, elements: int):  # type: ignore[no-untyped-def]
+        if self.report is None:
+            return None
+        report, words = self.report, f"{self.order}, {stage}, {elements} elements"
+
+        def monitor(iteration: int, objective: float, violation: float) -> None:
+            elapsed = time.monotonic() - self.effort.began
+            report(Progress(words, iteration, self._energy(objective), violation, elapsed))
+
+        return monitor
+
+
+def with_times(phased: PhasedProblem, times: Mapping[str, float]) -> PhasedProblem:
+    """The same problem with all boundary instants fixed."""
+    return replace(phased, times={name: (float(t), float(t)) for name, t in times.items()})
+
+
+def finite(trajectory: Trajectory) -> bool:
+    """Whether all curves are numbers."""
+    return all(bool(np.all(np.isfinite(p.values))) for p in trajectory.phases)

@@ -1,0 +1,251 @@
+"""solve(problem) -> Solution: stages, choice of the phase order, check on a finer mesh, audit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import xarray as xr
+
+from ergowalk.audit import audit
+from ergowalk.errors import ProblemError
+from ergowalk.problem import GaitProblem
+from ergowalk.solution import Solution
+from ergowalk.solution.progress import Report
+from ergowalk.solve.answer import dense_energy, dense_gait, describe, rhythm_of
+from ergowalk.solve.stages import Effort, OrderSearch, StageResult
+from ergowalk.transcription.walking import Smoothing
+
+COARSE, FINAL, FINER = 0.5, 1.0, 1.25
+"""Mesh levels of the search, of the reported gait, and of the check."""
+
+MESH_TOLERANCE = 0.01
+"""E may differ by this share between the reported and the next finer mesh."""
+
+IMPULSIVE_LEVELS = (0.5, 0.8, 1.25)
+"""Meshes on which a problem without moment-rate bound or cost is shown."""
+
+
+def solve(
+    problem: GaitProblem,
+    *,
+    method: str = "collocation",
+    solver: str = "ipopt",
+    progress: Report | None = None,
+    smoothing: Smoothing | None = None,
+) -> Solution:
+    """Find the cheapest gait.
+
+    The search runs on a coarse mesh from the human mean curves, first with the rhythm held, then
+    free; with both phase orders possible both are tried and the cheaper kept. The reported gait
+    is on a finer mesh, checked on one finer still, and audited.
+
+    Parameters
+    ----------
+    problem : GaitProblem
+    method, solver : str
+        "collocation" and "ipopt".
+    progress : callable, optional
+        Called with a :class:`~ergowalk.solution.Progress` once an iteration.
+    smoothing : Smoothing, optional
+        Small costs that single out one of many equal optima; not part of E.
+
+    Returns
+    -------
+    Solution
+        Also when the solver does not converge: then ``acceptable`` is False and ``status`` says
+        why.
+
+    Raises
+    ------
+    ProblemError
+        For a method or solver that does not exist.
+    """
+    if (method, solver) != ("collocation", "ipopt"):
+        raise ProblemError(
+            "no such method",
+            "use method 'collocation' with solver 'ipopt'",
+            field="method",
+            value=f"{method}/{solver}",
+        )
+    effort, weights = Effort(), smoothing or Smoothing()
+    searches = [
+        OrderSearch(problem, order, weights, effort, progress)
+        for order in problem.rhythm.orders()
+    ]
+    candidates = [_coarse(search) for search in searches]
+    best = min(candidates, key=lambda c: (not c.result.minimum.converged, c.result.energy_at_nodes))
+    if not problem.limits.bounds_moment_rate:
+        gait = _show_impulses(best)
+    else:
+        gait = _refine(best)
+    return _finished(gait, candidates, effort, weights)
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A stage of one phase order."""
+
+    search: OrderSearch
+    result: StageResult
+
+
+@dataclass(frozen=True)
+class Gait:
+    """The gait to be reported, with the record of its meshes."""
+
+    candidate: Candidate
+    dataset: xr.Dataset
+    history: list[dict[str, Any]]
+    status: str
+    settled: bool
+
+
+def _coarse(search: OrderSearch, level: float = COARSE) -> Candidate:
+    held = search.fixed_rhythm(search.fit(), level)
+    if search.problem.rhythm.fixed or not held.minimum.converged:
+        return Candidate(search, held)
+    return Candidate(search, search.free_rhythm(held, level))
+
+
+def _record(candidate: Candidate, **flags: bool) -> tuple[xr.Dataset, dict[str, Any]]:
+    """Dense curves of a stage, and one line of the mesh history."""
+    search, result = candidate.search, candidate.result
+    dataset = dense_gait(search.walker, search.order, result.trajectory)
+    record: dict[str, Any] = {
+        "elements": result.elements,
+        "points": result.points,
+        "energy_per_metre": dense_energy(dataset, search.problem.step_length_m),
+        "iterations": result.minimum.iterations,
+        "converged": result.minimum.converged,
+        **flags,
+    }
+    return dataset, record
+
+
+def _refine(coarse: Candidate) -> Gait:
+    """The reported gait and the check of its mesh."""
+    search = coarse.search
+    _, first = _record(coarse)
+    if not coarse.result.minimum.converged:
+        return _failed(coarse, [], "on the coarse mesh")
+    final = Candidate(search, search.refined(coarse.result, FINAL))
+    if not final.result.minimum.converged:
+        return _failed(final, [first], "on the final mesh")
+    dataset, reported = _record(final, final=True)
+    check = Candidate(search, search.refined(final.result, FINER))
+    _, finer = _record(check, finer=True)
+    history = [first, reported, finer]
+    if not check.result.minimum.converged:
+        status = (
+            f"converged on {reported['elements']} elements, but the check on "
+            f"{finer['elements']} did not: {check.result.minimum.message}"
+        )
+        return Gait(final, dataset, history, status, settled=False)
+    change = finer["energy_per_metre"] / reported["energy_per_metre"] - 1
+    settled = abs(change) <= MESH_TOLERANCE
+    status = (
+        f"{'converged' if settled else 'not converged with the mesh'}: "
+        f"E = {reported['energy_per_metre']:.2f} J/m on {reported['elements']} elements, "
+        f"{100 * change:+.2f} % on {finer['elements']}"
+    )
+    return Gait(final, dataset, history, status, settled)
+
+
+def _show_impulses(coarse: Candidate) -> Gait:
+    """Three meshes of a problem whose moments may change without bound.
+
+    There is no optimum to converge to: each finer mesh allows sharper peaks and a lower E.
+    """
+    search = coarse.search
+    history, peaks = [], []
+    current, dataset = coarse, None
+    for level in IMPULSIVE_LEVELS:
+        result = search.refined(current.result, level, points=coarse.result.points)
+        if not result.minimum.converged and dataset is not None:
+            break
+        current = Candidate(search, result)
+        dataset, record = _record(current)
+        record |= _sharpness(dataset, search)
+        history.append(record)
+        peaks.append(record["peak_moment_rate"])
+    assert dataset is not None
+    history[-1]["final"] = True
+
+    def listed(key: str, form: str) -> str:
+        return ", ".join(format(r[key], form) for r in history)
+
+    status = (
+        "no smooth minimiser: nothing bounds the rate of the joint moments, so the optimum is "
+        f"impulsive; on {listed('elements', 'd')} elements E = "
+        f"{listed('energy_per_metre', '.1f')} J/m with moment rates up to "
+        f"{listed('peak_moment_rate', '.0f')} N m/(kg s) and reactions up to "
+        f"{listed('peak_reaction', '.2f')} body weights"
+    )
+    return Gait(current, dataset, history, status, settled=False)
+
+
+def _sharpness(dataset: xr.Dataset, search: OrderSearch) -> dict[str, float]:
+    """Largest slope of a hip, knee or ankle moment per kg, and largest vertical reaction."""
+    walker = search.walker
+    moments = dataset["joint_moment"].to_numpy()[:, :, :3] / walker.mass
+    time = dataset["time"].to_numpy()
+    step = time[1:] - time[:-1]
+    slopes = abs(moments[1:] - moments[:-1])[step > 0] / step[step > 0][:, None, None]
+    weight = walker.mass * walker.gravity
+    reaction = dataset["ground_reaction_force"].sel(axis="y").to_numpy()
+    return {
+        "peak_moment_rate": float(slopes.max()),
+        "peak_reaction": float(reaction.max() / weight),
+    }
+
+
+def _failed(candidate: Candidate, history: list[dict[str, Any]], where: str) -> Gait:
+    dataset, record = _record(candidate, final=True)
+    status = f"not converged {where}: {candidate.result.minimum.message}"
+    return Gait(candidate, dataset, [*history, record], status, settled=False)
+
+
+def _finished(
+    gait: Gait, candidates: list[Candidate], effort: Effort, smoothing: Smoothing
+) -> Solution:
+    """Attributes, audit, and the verdict."""
+    search = gait.candidate.search
+    problem = search.problem
+    tried = {
+        str(c.search.order): {
+            "energy_at_nodes": c.result.energy_at_nodes,
+            "converged": c.result.minimum.converged,
+        }
+        for c in candidates
+    }
+    extra = {
+        "phase_order": str(search.order),
+        "phase_orders_tried": _json(tried),
+        "smoothing": _json(vars(smoothing)),
+        "iterations": effort.iterations,
+        "solve_time": effort.solve_time,
+        "build_time": effort.build_time,
+    }
+    dataset = describe(
+        gait.dataset,
+        problem,
+        rhythm_of(gait.candidate.result.trajectory, problem.stride_time_s),
+        method="collocation",
+        status=gait.status,
+        history=gait.history,
+        extra=extra,
+    )
+    report = audit(dataset, problem.folder)
+    accepted = gait.settled and report.accepted
+    if gait.settled and not report.accepted:
+        failed = ", ".join(line.key for line in report.failed)
+        dataset.attrs["solver_status"] += f"; the audit rejects it: {failed}"
+    dataset.attrs["acceptable"] = int(accepted)
+    return Solution(dataset)
+
+
+def _json(value: object) -> str:
+    import json
+
+    return json.dumps(value)

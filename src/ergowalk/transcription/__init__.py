@@ -1,0 +1,1 @@
+"""Transcription: optimal control problems in phases become nonlinear programmes."""

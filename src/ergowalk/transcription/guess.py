@@ -1,0 +1,120 @@
+"""Where the search begins: the human mean curves, made to stand on the ground."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ergowalk.gait.rhythm import PhaseOrder, Rhythm, boundary_fractions, half_stride_phases
+from ergowalk.mechanics.dynamics import joint_moments_from, total_reaction
+from ergowalk.mechanics.foot import ankle_moment_under, metatarsal_moment_under
+from ergowalk.problem import GaitProblem
+from ergowalk.transcription.collocation import Guess, Samples, Trajectory
+from ergowalk.transcription.motion import body_motion
+from ergowalk.transcription.walking import Walker
+
+Array = NDArray[np.float64]
+
+
+def starting_rhythm(problem: GaitProblem, order: PhaseOrder) -> Rhythm:
+    """The printed rhythm inside the bounds; foot-flat and toe-off swapped if the order asks."""
+    start = problem.rhythm.start()
+    early, late = sorted((start.heel_end, start.other_toe_off))
+    first, second = ("heel_end", "toe_off") if order is PhaseOrder.FLAT_FIRST else (
+        "toe_off",
+        "heel_end",
+    )
+    shift = {"heel_end": 0.0, "toe_off": 0.5}
+    wanted = {first: early + shift[first], second: late + shift[second]}
+    inside = {n: float(np.clip(v, *problem.rhythm.bounds(n))) for n, v in wanted.items()}
+    return Rhythm(inside["heel_end"], start.heel_off, inside["toe_off"])
+
+
+def starting_times(problem: GaitProblem, rhythm: Rhythm) -> dict[str, float]:
+    """Boundary instants [s] of a rhythm."""
+    stride = problem.stride_time_s
+    return {name: f * stride for name, f in boundary_fractions(rhythm).items()}
+
+
+def human_guess(walker: Walker, order: PhaseOrder, times: Mapping[str, float]) -> Guess:
+    """Angles from the mean joint angles, trunk upright; for the kinematic fit."""
+    phases, stride = half_stride_phases(order), walker.problem.stride_time_s
+
+    def guess(i: int, fractions: Array) -> Samples:
+        start, end = times[phases[i].start], times[phases[i].end]
+        s = (start + (end - start) * fractions) / stride
+        value, rate, acceleration = (_angles(walker, s, d) for d in (0, 1, 2))
+        algebraic = {
+            "foot_2": value["foot_2"],
+            "toes_2": value["foot_2"] + walker.leg.foot_angle,
+            "foot_2_rate": rate["foot_2"],
+            "toes_2_rate": rate["foot_2"],
+        }
+        return Samples(value, rate, acceleration, {}, algebraic)
+
+    return guess
+
+
+def _angles(walker: Walker, s: Array, derivative: int) -> dict[str, Array]:
+    """Segment angles of the human mean, or their time derivatives, at stride fractions s."""
+    factor = walker.problem.stride_time_s**-derivative
+    out = {"trunk": np.zeros_like(s)}
+    for leg, shift in ((1, 0.0), (2, 0.5)):
+        hip, knee, ankle = (
+            walker.corridors[j].mean(s + shift, derivative) * factor
+            for j in ("hip", "knee", "ankle")
+        )
+        out[f"thigh_{leg}"], out[f"shank_{leg}"] = hip, hip - knee
+        out[f"foot_{leg}"] = ankle + out[f"shank_{leg}"] + (0 if derivative else walker.flat)
+    return out
+
+
+def loaded_guess(walker: Walker, order: PhaseOrder, fit: Trajectory) -> Guess:
+    """The fitted motion with moments and reactions by inverse dynamics.
+
+    In double support the trailing foot's share of the load runs linearly down to toe-off.
+    """
+    phases = half_stride_phases(order)
+    toe_off, mass = fit.times["other_toe_off"], walker.mass
+
+    def guess(i: int, fractions: Array) -> Samples:
+        phase, curves = phases[i], fit.phases[i]
+        samples = curves.at(fractions)
+        motion = body_motion(walker, phase, samples)
+        time = curves.start + curves.duration * fractions
+        share = np.clip(1 - time / toe_off, 0.0, 1.0) if phase.double_support else 0.0 * time
+        total = total_reaction(walker.coefficients, motion)
+        two = (share * total[0], share * total[1])
+        one = (total[0] - two[0], total[1] - two[1])
+        points, tip = walker.points(motion), walker.prints[1].toe_tip
+        p_2 = ankle_moment_under(points[1], two, tip) if phase.double_support else 0.0 * time
+        w_2 = metatarsal_moment_under(points[1], two, tip) if phase.double_support else p_2
+        first, second = joint_moments_from(walker.coefficients, motion, (one, two), p_2)
+        (x_a, y_a), x_m = points[0].ankle.position, points[0].metatarsal.position[0]
+        w_1 = first[2] + y_a * one[0] + (x_m - x_a) * one[1]
+        moments = [*first, w_1, *second, w_2]
+        control = {n: m / mass for n, m in zip(_CONTROLS, moments, strict=True)}
+        control |= {
+            "reaction_share": two[0] / mass,
+            "reaction_slope": 0 * time,
+            "pressure_shift": 0 * time,
+            "pressure_slope": 0 * time,
+        }
+        algebraic = {
+            "reaction_x_1": one[0] / mass,
+            "reaction_y_1": one[1] / mass,
+            "reaction_x_2": two[0] / mass,
+            "reaction_y_2": two[1] / mass,
+            "foot_2": motion.legs[1].foot.angle,
+            "toes_2": motion.legs[1].toes.angle,
+            "foot_2_rate": motion.legs[1].foot.rate,
+            "toes_2_rate": motion.legs[1].toes.rate,
+        }
+        return Samples(samples.value, samples.rate, samples.acceleration, control, algebraic)
+
+    return guess
+
+
+_CONTROLS = tuple(f"{j}_{i}" for i in (1, 2) for j in ("hip", "knee", "ankle", "metatarsal"))

@@ -1,0 +1,155 @@
+"""The language in which a problem is put to the collocation: phases and functions of an instant.
+
+Coordinates have rates and accelerations (second-order dynamics); controls are continuous and
+linear within an element; algebraic variables live at the Gauss points. A phase tells what must
+hold inside, at mesh points, and at the ends of elements. Nothing here knows about walking.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+INF = float("inf")
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """A named unknown: bounds in its own unit, and the scale that the solver divides by."""
+
+    name: str
+    lower: float = -INF
+    upper: float = INF
+    scale: float = 1.0
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """A second-order coordinate with bounds on its value and scales of rate and acceleration."""
+
+    name: str
+    lower: float = -INF
+    upper: float = INF
+    rate_scale: float = 1.0
+    acceleration_scale: float = 1.0
+
+
+@dataclass(frozen=True)
+class State:
+    """Value, rate and acceleration of a coordinate at an instant, as symbols."""
+
+    value: Any
+    rate: Any
+    acceleration: Any = 0.0
+
+
+@dataclass(frozen=True)
+class Instant:
+    """What a phase function sees: symbols at one instant."""
+
+    time: Any
+    coordinates: Mapping[str, State]
+    controls: Mapping[str, Any]
+    algebraics: Mapping[str, Any]
+    control_slopes: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass
+class Terms:
+    """What a phase function gives back.
+
+    ``rows`` are constraints (label, expression, lower, upper); ``absolute`` are expressions whose
+    absolute value is integrated into the objective, exactly, through two slacks each;
+    ``integrand`` is integrated as it is.
+    """
+
+    rows: list[tuple[str, Any, float, float]] = field(default_factory=list)
+    absolute: list[Any] = field(default_factory=list)
+    integrand: Any = 0.0
+
+    def equal(self, label: str, *expressions: Any) -> None:
+        """Each expression is zero."""
+        self.rows += [(label, e, 0.0, 0.0) for e in expressions]
+
+    def between(self, label: str, expression: Any, lower: float, upper: float) -> None:
+        """lower <= expression <= upper."""
+        self.rows.append((label, expression, lower, upper))
+
+    def nonnegative(self, label: str, *expressions: Any) -> None:
+        """Each expression is at least zero."""
+        self.rows += [(label, e, 0.0, INF) for e in expressions]
+
+
+InstantFunction = Callable[[Instant], Terms]
+
+
+@dataclass(frozen=True)
+class PhaseModel:
+    """One phase: its unknowns and its functions.
+
+    Attributes
+    ----------
+    inside
+        Equations, inequalities, costs at a Gauss point (accelerations and algebraics are there).
+    path
+        Path constraints of coordinates and rates; asked at every mesh point and at the middle
+        Gauss point of every element. With ``path_everywhere`` they may also use algebraics, and
+        are asked at all Gauss points (at mesh points ``algebraics`` is then empty).
+    at_ends
+        Inequalities at both ends of each element, where algebraics are extrapolated from the
+        Gauss points: without them a force may leak between the points.
+    """
+
+    name: str
+    start: str
+    end: str
+    coordinates: tuple[Coordinate, ...]
+    controls: tuple[Unknown, ...]
+    algebraics: tuple[Unknown, ...]
+    absolute_scale: float
+    inside: InstantFunction
+    path: InstantFunction
+    at_ends: InstantFunction
+    path_everywhere: bool = False
+
+
+@dataclass(frozen=True)
+class Link:
+    """Constraints on the coordinates and rates at one phase boundary."""
+
+    name: str
+    boundary: str
+    function: InstantFunction
+
+
+@dataclass(frozen=True)
+class PhasedProblem:
+    """A chain of phases with free boundary times and a periodic exchange at the end.
+
+    Attributes
+    ----------
+    phases
+        In time order; each starts where the one before ends.
+    times
+        Bounds (lower, upper) of each boundary instant; equal bounds fix it.
+    time_rows
+        (label, {boundary: factor}, lower, upper): linear constraints between boundary instants.
+    exchange
+        Name at the last boundary -> name at the first: these unknowns are one and the same.
+    fixed
+        (boundary, name, "value" | "rate" | "control") -> number.
+    control_rates
+        Bound on |control'| by name, where there is one.
+    control_rate_cost
+        Weight of the integral of squared control rates, by name.
+    """
+
+    phases: tuple[PhaseModel, ...]
+    times: Mapping[str, tuple[float, float]]
+    time_rows: tuple[tuple[str, Mapping[str, float], float, float], ...]
+    exchange: Mapping[str, str]
+    fixed: Mapping[tuple[str, str, str], float]
+    links: tuple[Link, ...]
+    control_rates: Mapping[str, float]
+    control_rate_cost: Mapping[str, float]

@@ -1,0 +1,1 @@
+"""Tests of the mechanics, named after the laws they check."""

@@ -1,0 +1,1 @@
+"""The stride as a dataset, its energy, and its file."""

@@ -1,0 +1,1 @@
+"""Collocation on problems with known answers, and what it makes of walking."""

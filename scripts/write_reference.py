@@ -87,7 +87,7 @@ def _entry(name: str, path: str) -> str:
         thing = getattr(thing, attribute)
     parts = [f"## {name}", f"`from {place} import {attribute}`"]
     if inspect.isfunction(thing):
-        parts.append(fenced(f"{name}{_signature(thing)}", "python"))
+        parts.append(fenced(f"{name}{_signature(thing)}"))
     parts.append(fenced(_plain(inspect.getdoc(thing))))
     if inspect.isclass(thing):
         members = {k: v for k, v in vars(thing).items() if k[0] != "_" and _documented(v)}

@@ -36,7 +36,7 @@ def flat(value: float) -> PeriodicCurve:
 
 def human_with(mean: PeriodicCurve, sd: PeriodicCurve) -> HumanGait:
     """A table in which every compared signal has this mean and SD."""
-    return HumanGait("made", {name: (mean, sd) for name in NAMES})
+    return HumanGait("made", dict.fromkeys(NAMES, (mean, sd)))
 
 
 def constant_gait(**values: float):

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ergowalk.problem import GaitProblem, preset
     from ergowalk.problem.files import read_problem
     from ergowalk.solution import Solution
-    from ergowalk.solve import solve
+    from ergowalk.solving import solve
 
 _HOMES = {
     "Body": "ergowalk.body",
@@ -31,7 +31,7 @@ _HOMES = {
     "human_gait": "ergowalk.corridors",
     "preset": "ergowalk.problem",
     "read_problem": "ergowalk.problem.files",
-    "solve": "ergowalk.solve",
+    "solve": "ergowalk.solving",
 }
 """Public names and where they live; loaded on first use, so that importing is quick."""
 

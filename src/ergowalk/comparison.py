@@ -304,7 +304,7 @@ def stride_mean(fraction: Array, values: Array) -> float:
 
 
 def share_within_one(fraction: Array, ratio: Array) -> float:
-    """Share of the stride in which \\|ratio\\| <= 1, the curve being linear between samples.
+    r"""Share of the stride in which \\|ratio\\| <= 1, the curve being linear between samples.
 
     Crossings inside an interval count with their exact share, so the answer hardly depends on
     the sampling. Both arrays are (n,).

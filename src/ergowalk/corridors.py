@@ -71,9 +71,9 @@ class PeriodicCurve:
         phase = 2 * np.pi * k * s[..., None]
         turn = derivative * np.pi / 2  # each derivative advances the phase by a right angle
         scale = (2 * np.pi * k) ** derivative
-        values: NDArray[np.float64] = (np.cos(phase + turn) * scale) @ np.array(self.cosine)
-        values = values + (np.sin(phase + turn) * scale) @ np.array(self.sine)
-        return values
+        even = np.cos(phase + turn) @ (scale * np.array(self.cosine))
+        odd = np.sin(phase + turn) @ (scale * np.array(self.sine))
+        return np.asarray(even + odd, dtype=float)
 
     def combined(self, other: PeriodicCurve, factor: float) -> PeriodicCurve:
         """self + factor * other."""

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import copyreg
+from typing import Any
+
 
 class ErgowalkError(Exception):
     """Root of everything that ergowalk raises on purpose."""
@@ -39,6 +42,10 @@ class InputError(ErgowalkError, ValueError):
         self.value = value
         self.file = file
         super().__init__(str(self))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Rebuilt from its attributes, so that it can come back from a worker process."""
+        return copyreg.__newobj__, (type(self), *self.args), dict(vars(self))  # type: ignore[attr-defined]
 
     def located(self, file: str) -> InputError:
         """The same error, with the file it came from (kept if already known)."""

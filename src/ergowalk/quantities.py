@@ -36,9 +36,7 @@ QUANTITIES = {
             "trunk_angle", "psi", "rad", _T, "trunk angle from the upward vertical, leaning back +"
         ),
         Quantity("trunk_angular_velocity", "psi'", "rad/s", _T, "trunk angular velocity"),
-        Quantity(
-            "trunk_angular_acceleration", "psi''", "rad/s2", _T, "trunk angular acceleration"
-        ),
+        Quantity("trunk_angular_acceleration", "psi''", "rad/s2", _T, "trunk angular acceleration"),
         Quantity(
             "segment_angle",
             "alpha, beta, gamma, epsilon",
@@ -81,9 +79,7 @@ QUANTITIES = {
             _TLJ,
             "moment times relative rate, into the walker +",
         ),
-        Quantity(
-            "ground_reaction_force", "R_x, R_y", "N", _TLX, "force of the ground on the foot"
-        ),
+        Quantity("ground_reaction_force", "R_x, R_y", "N", _TLX, "force of the ground on the foot"),
         Quantity("center_of_pressure", "x_R", "m", _TL, "centre of pressure, NaN in swing"),
         Quantity("contact_phase", "-", "1", _TL, "how the foot touches the ground"),
         Quantity("corridor_lower", "theta", "rad", _TLJ, "lower bound of the joint angle"),

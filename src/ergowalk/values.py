@@ -99,7 +99,8 @@ def _remedy(place: list[str], model: type[Value]) -> str:
 
 
 def _nearest(place: list[str], model: type[Value]) -> str:
-    known = list(_model_at(place[:-1], model).model_fields)
+    fields = _model_at(place[:-1], model).model_fields
+    known = [name for name, field in fields.items() if not field.exclude]
     close = difflib.get_close_matches(place[-1], known, n=1)
     return f"did you mean '{close[0]}'?" if close else f"known keys: {', '.join(known)}"
 

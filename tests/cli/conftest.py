@@ -97,7 +97,7 @@ class Auditor:
 
 
 class FakeSolver:
-    """Stands in for ``ergowalk.solve.solve``; ``attributes`` are those of every gait."""
+    """Stands in for ``ergowalk.solving.solve``; ``attributes`` are those of every gait."""
 
     def __init__(self) -> None:
         self.attributes: dict[str, object] = {}
@@ -156,7 +156,7 @@ def auditor(monkeypatch) -> Auditor:
 def solver(monkeypatch, auditor) -> FakeSolver:
     """The solver replaced by one that knows the answer."""
     fake = FakeSolver()
-    monkeypatch.setattr(importlib.import_module("ergowalk.solve"), "solve", fake)
+    monkeypatch.setattr(importlib.import_module("ergowalk.solving"), "solve", fake)
     return fake
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -82,7 +84,7 @@ def test_each_phase_starts_where_the_last_one_ends(order: PhaseOrder) -> None:
     phases = half_stride_phases(order)
     assert phases[0].start == "heel_contact"
     assert phases[-1].end == "half_stride"
-    for before, after in zip(phases, phases[1:], strict=False):
+    for before, after in itertools.pairwise(phases):
         assert before.end == after.start
     assert {phase.start for phase in phases} | {"half_stride"} == set(BOUNDARIES)
 
@@ -106,7 +108,7 @@ def test_trailing_leg_stands_on_its_toe_tip_and_then_swings(order: PhaseOrder) -
 @pytest.mark.parametrize("order", ORDERS)
 def test_exactly_one_leg_changes_its_contact_between_phases(order: PhaseOrder) -> None:
     phases = half_stride_phases(order)
-    for before, after in zip(phases, phases[1:], strict=False):
+    for before, after in itertools.pairwise(phases):
         changed = [a is not b for a, b in zip(before.legs, after.legs, strict=True)]
         assert sum(changed) == 1
 
@@ -118,7 +120,7 @@ def test_phases_of_a_rhythm_follow_each_other_in_time(rhythm: Rhythm) -> None:
     assert set(fractions) == set(BOUNDARIES)
     phases = half_stride_phases(rhythm.order)
     times = [fractions[phase.start] for phase in phases] + [fractions[phases[-1].end]]
-    for before, after in zip(times, times[1:], strict=False):
+    for before, after in itertools.pairwise(times):
         assert before <= after + 1e-15  # toe_off - 0.5 is rounded
     assert (times[0], times[-1]) == (0.0, 0.5)
     changes = {"heel_end": rhythm.heel_end, "heel_off": rhythm.heel_off}

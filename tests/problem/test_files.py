@@ -52,7 +52,7 @@ def bodies() -> st.SearchStrategy[Body]:
         value = getattr(Body(), name)
         if "inertia" in name:
             fields[name] = st.floats(1.2 * value, 3 * value)
-        elif name.startswith("trunk_mass") or name.startswith("gravity"):
+        elif name.startswith(("trunk_mass", "gravity")):
             fields[name] = st.floats(0.9 * value, 1.1 * value)
         elif name in ("toe_length_m", "heel_to_metatarsal_m"):
             fields[name] = per_leg(value, 1.2)

@@ -65,7 +65,7 @@ def test_multipliers_balance_the_gradient() -> None:
 def test_multipliers_near_the_answer_save_iterations() -> None:
     programme = hock_schittkowski_71()
     cold = Ipopt().minimise(programme, HS71_START)
-    close = Ipopt(strategy="monotone", barrier_start=1e-7, warm=True)
+    close = Ipopt(strategy="monotone", barrier_start=1e-7, push=1e-8)
     warm = close.minimise(
         programme, cold.x, multipliers=(cold.variable_multipliers, cold.row_multipliers)
     )

@@ -14,7 +14,9 @@ from hypothesis.extra.numpy import arrays
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
-from ergowalk.transcription.collocation import Collocation, Guess, PhaseKernel, Samples
+from ergowalk.transcription.collocation import Collocation
+from ergowalk.transcription.curves import Guess, Samples
+from ergowalk.transcription.kernel import PhaseKernel
 from ergowalk.transcription.phases import (
     Coordinate,
     Instant,
@@ -103,7 +105,7 @@ def polynomials(coefficients: Mapping[str, Array], m: int) -> Guess:
 
 
 numbers = arrays(np.float64, 6, elements=st.floats(-3, 3, allow_subnormal=False))
-tables = st.fixed_dictionaries({name: numbers for name in ("x", "y", "u", "v", "z")})
+tables = st.fixed_dictionaries(dict.fromkeys(("x", "y", "u", "v", "z"), numbers))
 COLLOCATIONS = {m: Collocation(PROBLEM, MESH, m) for m in (2, 3, 4)}
 
 

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ergowalk.solvers.ipopt import Ipopt, Minimum
-from ergowalk.transcription.collocation import Collocation, Samples, Trajectory
+from ergowalk.transcription.collocation import Collocation
+from ergowalk.transcription.curves import Samples, Trajectory
 from ergowalk.transcription.phases import (
     Coordinate,
     Instant,
@@ -125,7 +126,7 @@ def still(problem: PhasedProblem) -> Any:
         model = problem.phases[i]
         names = [[c.name for c in model.coordinates]] * 3
         names += [[u.name for u in model.controls], [z.name for z in model.algebraics]]
-        return Samples(*({name: zero for name in kind} for kind in names))
+        return Samples(*(dict.fromkeys(kind, zero) for kind in names))
 
     return guess
 

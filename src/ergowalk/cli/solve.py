@@ -86,7 +86,7 @@ def _stored_inputs(problem: GaitProblem) -> dict[str, bytes]:
 
 
 def _solved(problem: GaitProblem, arguments: Namespace, progress: ProgressLine) -> Solution:
-    from ergowalk.solve import solve  # the solver takes longest to import
+    from ergowalk.solving import solve  # the solver takes longest to import
 
     with Interrupts() as interrupts:
 

@@ -65,35 +65,47 @@ def inverse_dynamics(
     motion : BodyMotion
         Arrays (n,); leg 1 leads and stands on its print at the origin.
     sharing : Sharing
-        In heel+toe support ``force_y`` is replaced by the only value for which both centres of
-        pressure are where the contacts are.
+        In heel+toe support ``force_y`` is replaced by :func:`vertical_share`.
     """
     if contacts == (Contact.HEEL, Contact.TOE):
-        force_y = vertical_share(body, motion, sharing.force_x, sharing.pressure)
+        two = (sharing.force_x, sharing.force_y)
+        force_y = vertical_share(body, motion, two, sharing.pressure)
         sharing = Sharing(sharing.force_x, force_y, sharing.pressure)
     return _loads(body, motion, contacts, sharing)
 
 
-def vertical_share(body: Body, motion: BodyMotion, force_x: Any, pressure: Any) -> Any:
-    """Vertical force [N] under the trailing foot for which leg 1's pressure is at its heel.
+FIRM = 0.5
+"""Load on the leading heel, in body weights, from which its centre of pressure takes the error."""
 
-    The balance (1) is affine in that force, so two evaluations give its zero. Numbers, arrays or
-    CasADi symbols; ``force_x`` [N] acts on the trailing foot at ``pressure`` [m].
+
+def vertical_share(body: Body, motion: BodyMotion, trailing: Vector, pressure: Any) -> Any:
+    """Vertical force [N] under the trailing toe while both feet touch in a point.
+
+    A motion between the nodes of a transcription has no force that puts both centres of pressure
+    exactly on their points and also joins smoothly. While the leading heel bears little, the
+    force is the only one for which its pressure is at the heel; the more it bears, the closer to
+    the given ``trailing`` force (x, y) [N], since then the pressure hardly moves. The error shows
+    in the centre of pressure, far below a millimetre on a sound mesh.
+
+    The balance (1) is affine in the force, so two evaluations give its zero. Numbers, arrays or
+    CasADi symbols; the force acts at ``pressure`` [m].
     """
     c, heel = coefficients(body), leading_print(body.leg(0)).heel
     total = total_reaction(c, motion)
-    leading, trailing = (leg_points(body.leg(i), motion.legs[i], motion.hip) for i in (0, 1))
+    leading, toe = (leg_points(body.leg(i), motion.legs[i], motion.hip) for i in (0, 1))
 
-    def miss(force_y: float) -> Any:
-        two = (force_x, force_y)
-        one = (total[0] - force_x, total[1] - force_y)
-        trailing_ankle = ankle_moment_under(trailing, two, pressure)
-        (_, _, ankle), _ = joint_moments_from(c, motion, (one, two), trailing_ankle)
+    def miss(force_y: Any) -> Any:
+        two = (trailing[0], force_y)
+        one = (total[0] - trailing[0], total[1] - force_y)
+        toe_ankle = ankle_moment_under(toe, two, pressure)
+        (_, _, ankle), _ = joint_moments_from(c, motion, (one, two), toe_ankle)
         return pressure_moment(leading, ankle, one) - heel * one[1]
 
-    unit = body.total_mass * body.gravity_m_s2
-    at_zero = miss(0.0)
-    return -unit * at_zero / (miss(unit) - at_zero)
+    weight = body.total_mass * body.gravity_m_s2
+    given = miss(trailing[1])
+    correction = -weight * given / (miss(trailing[1] + weight) - given)
+    load = (total[1] - trailing[1]) / weight
+    return trailing[1] + correction / (1 + (load / FIRM) ** 4)
 
 
 def _loads(

@@ -37,9 +37,7 @@ class RhythmBounds(Value):
     heel_end: Instant = Field(
         default=(0.02, 0.20), description="end of rotation over the heel, tau^h, fraction of T"
     )
-    heel_off: Instant = Field(
-        default=(0.05, 0.45), description="heel-off, tau^m, fraction of T"
-    )
+    heel_off: Instant = Field(default=(0.05, 0.45), description="heel-off, tau^m, fraction of T")
     toe_off: Instant = Field(
         default=(0.52, 0.66), description="toe-off, tau^s, fraction of T (after 0.5)"
     )
@@ -57,7 +55,9 @@ class RhythmBounds(Value):
     @property
     def fixed(self) -> bool:
         """Whether nothing is free."""
-        return all(low == high for low, high in map(self.bounds, ("heel_end", "heel_off", "toe_off")))
+        return all(
+            low == high for low, high in map(self.bounds, ("heel_end", "heel_off", "toe_off"))
+        )
 
     def start(self) -> Rhythm:
         """The printed rhythm, moved inside the bounds and in order (3): where the search begins."""
@@ -144,9 +144,7 @@ class JointBounds(Value):
     hip: Bound = Field(default="off", description="bound at the hip, or 'off'")
     knee: Bound = Field(default="off", description="bound at the knee, or 'off'")
     ankle: Bound = Field(default="off", description="bound at the ankle, or 'off'")
-    metatarsal: Bound = Field(
-        default="off", description="bound at the metatarsal joint, or 'off'"
-    )
+    metatarsal: Bound = Field(default="off", description="bound at the metatarsal joint, or 'off'")
 
     def of(self, joint: str) -> float | None:
         """The bound of a joint, None where it is off."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
@@ -14,7 +16,7 @@ def smooth_pieces(time: Array) -> list[slice]:
     """Slices of the smooth pieces of a record in which jumps stand twice."""
     breaks = np.flatnonzero(np.diff(time) <= 0) + 1
     edges = [0, *breaks.tolist(), len(time)]
-    return [slice(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True) if b - a > 1]
+    return [slice(a, b) for a, b in itertools.pairwise(edges) if b - a > 1]
 
 
 def absolute_integral(time: Array, power: Array) -> float:

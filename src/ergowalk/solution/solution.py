@@ -27,10 +27,12 @@ if TYPE_CHECKING:
 class Solution:
     """A gait: every curve of the stride, and how it was found.
 
-    ``dataset`` is exactly the gait file; all figures here are computed from its curves.
+    ``dataset`` is exactly the gait file; ``folder`` is where a corridor table named in its problem
+    may lie.
     """
 
     dataset: xr.Dataset
+    folder: Path | None = None
 
     @property
     def status(self) -> str:
@@ -61,7 +63,7 @@ class Solution:
     @cached_property
     def problem(self) -> GaitProblem:
         """The problem that this gait answers."""
-        return problem_from_toml(str(self.dataset.attrs["problem"]))
+        return problem_from_toml(str(self.dataset.attrs["problem"]), folder=self.folder)
 
     @cached_property
     def energy_by_joint(self) -> dict[str, float]:
@@ -73,7 +75,7 @@ class Solution:
         """Every residual of the audit, recomputed from the curves by independent code."""
         from ergowalk.audit import audit
 
-        return audit(self.dataset)
+        return audit(self.dataset, self.folder)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write the gait as NetCDF-4; an interrupted call leaves the old file or none.
@@ -123,7 +125,7 @@ class Solution:
                 file=str(source),
             ) from None
         check_readable(dataset, str(source))
-        return cls(dataset)
+        return cls(dataset, source.parent)
 
 
 def _unwritable(target: Path, error: Exception) -> OutputError:

@@ -26,7 +26,7 @@ Monitor = Callable[[int, float, float], None]
 class Ipopt:
     """IPOPT as a frozen choice of options.
 
-    ``warm`` starts close to the given point: small barrier, small push from the bounds.
+    ``push`` is how far a start on a bound is moved inside; a small one keeps a good start.
     """
 
     tolerance: float = 1e-7
@@ -34,7 +34,7 @@ class Ipopt:
     max_iterations: int = 400
     strategy: str = "adaptive"
     barrier_start: float | None = None
-    warm: bool = False
+    push: float = 1e-2
     extra: Mapping[str, object] = field(default_factory=dict)
 
     def minimise(
@@ -111,8 +111,8 @@ class Ipopt:
         }
         if self.barrier_start is not None:
             options["mu_init"] = self.barrier_start
-        if self.warm:
-            options |= {"bound_push": 1e-8, "bound_frac": 1e-8, "slack_bound_push": 1e-8}
+        for name in ("bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac"):
+            options[name] = self.push
         return options | dict(self.extra)
 
 

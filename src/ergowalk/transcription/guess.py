@@ -11,9 +11,9 @@ from ergowalk.gait.rhythm import PhaseOrder, Rhythm, boundary_fractions, half_st
 from ergowalk.mechanics.dynamics import joint_moments_from, total_reaction
 from ergowalk.mechanics.foot import ankle_moment_under, metatarsal_moment_under
 from ergowalk.problem import GaitProblem
-from ergowalk.transcription.collocation import Guess, Samples, Trajectory
+from ergowalk.transcription.curves import Guess, Samples, Trajectory
 from ergowalk.transcription.motion import body_motion
-from ergowalk.transcription.walking import Walker
+from ergowalk.transcription.walker import Walker
 
 Array = NDArray[np.float64]
 
@@ -22,9 +22,13 @@ def starting_rhythm(problem: GaitProblem, order: PhaseOrder) -> Rhythm:
     """The printed rhythm inside the bounds; foot-flat and toe-off swapped if the order asks."""
     start = problem.rhythm.start()
     early, late = sorted((start.heel_end, start.other_toe_off))
-    first, second = ("heel_end", "toe_off") if order is PhaseOrder.FLAT_FIRST else (
-        "toe_off",
-        "heel_end",
+    first, second = (
+        ("heel_end", "toe_off")
+        if order is PhaseOrder.FLAT_FIRST
+        else (
+            "toe_off",
+            "heel_end",
+        )
     )
     shift = {"heel_end": 0.0, "toe_off": 0.5}
     wanted = {first: early + shift[first], second: late + shift[second]}

@@ -102,15 +102,23 @@ def lay_out(problem: PhasedProblem, mesh: Mesh, m: int, absolutes: tuple[int, ..
                 room = INF if m > 2 else 0.0
                 bulges.append([register.add(-room, room, u.scale) for u in phase.controls])
                 gauss.append([_gauss_point(register, phase, n_abs) for _ in range(m)])
+        values, rates, controls = (
+            np.array([p[i] for p in points], dtype=np.int64) for i in range(3)
+        )
+        accelerations, algebraics, plus, minus = (
+            np.array([[g[i] for g in row] for row in gauss], dtype=np.int64) for i in range(4)
+        )
         phases.append(
             PhaseIndices(
-                (times[phase.start], times[phase.end]),
-                *(np.array([p[i] for p in points], dtype=np.int64) for i in range(3)),
-                np.array(bulges, dtype=np.int64).reshape(n_e, -1),
-                *(
-                    np.array([[g[i] for g in row] for row in gauss], dtype=np.int64)
-                    for i in range(4)
-                ),
+                times=(times[phase.start], times[phase.end]),
+                values=values,
+                rates=rates,
+                controls=controls,
+                bulges=np.array(bulges, dtype=np.int64).reshape(n_e, -1),
+                accelerations=accelerations,
+                algebraics=algebraics,
+                plus=plus,
+                minus=minus,
             )
         )
     for (edge, name, kind), number in problem.fixed.items():

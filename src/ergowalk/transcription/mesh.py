@@ -13,17 +13,20 @@ from ergowalk.transcription.layout import Mesh
 
 Array = NDArray[np.float64]
 
-TRANSFER, STANCE, PUSH = 0.0037, 0.0110, 0.0085
+TRANSFER, STANCE, PUSH = 0.0037, 0.0095, 0.0073
 """Element sizes as fractions of T: where the load changes legs, on the flat foot, on the forefoot.
 
 Found by refining one phase at a time: with these the phases share the error of E about evenly.
 """
 
-LAYER = 4
-"""Elements over which sizes shrink towards a change of contact, where forces turn sharply."""
+LAYER, PUSH_OFF = 4, 10
+"""Elements over which sizes shrink towards a change of contact, where forces turn sharply, and
+before the other heel lands, where the foot turns fast under full load."""
 
 
-def walking_mesh(order: PhaseOrder, times: Mapping[str, float], stride: float, level: float) -> Mesh:
+def walking_mesh(
+    order: PhaseOrder, times: Mapping[str, float], stride: float, level: float
+) -> Mesh:
     """A mesh for given boundary instants [s].
 
     Most of the error of E sits where the load passes from leg to leg, so elements are small
@@ -42,24 +45,24 @@ def _phase_mesh(phase: Phase, share: float, level: float) -> Array:
         return graded(_count(share / TRANSFER, level, at_least=3), 0.6, 0.5)
     if phase.legs[0] is Contact.FLAT:
         return graded(_count(share / STANCE, level, at_least=4), 0.4, 0.2)
-    return graded(_count(share / PUSH, level, at_least=6), 0.1, 0.3)
+    return graded(_count(share / PUSH, level, at_least=6), 0.1, 0.25, PUSH_OFF)
 
 
 def _count(at_level_one: float, level: float, at_least: int) -> int:
     return max(at_least, math.ceil(level * at_level_one - 1e-9))
 
 
-def graded(n: int, first: float, last: float) -> Array:
+def graded(n: int, first: float, last: float, last_layer: int = LAYER) -> Array:
     """Boundaries of ``n`` elements from 0 to 1.
 
     Elements are equal inside; over a layer at each end they shrink geometrically until the very
     first and last are ``first`` and ``last`` times as large.
     """
-    layer = min(LAYER, n // 2)
+    head, tail = min(LAYER, n // 2), min(last_layer, n // 2)
     sizes = np.ones(n)
-    if layer:
-        sizes[:layer] *= np.geomspace(first, 1.0, layer + 1)[:-1]
-        sizes[-layer:] *= np.geomspace(1.0, last, layer + 1)[1:]
+    if n > 1:
+        sizes[:head] *= np.geomspace(first, 1.0, head + 1)[:-1]
+        sizes[-tail:] *= np.geomspace(1.0, last, tail + 1)[1:]
     edges = np.concatenate([[0.0], np.cumsum(sizes)])
     mesh: Array = edges / edges[-1]
     return mesh

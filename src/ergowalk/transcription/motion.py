@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ergowalk.gait.loads import Sharing
 from ergowalk.gait.rhythm import Contact, Phase
 from ergowalk.mechanics.foot import reaction_from_moments, toe_chain
-from ergowalk.mechanics.kinematics import BodyMotion, LegMotion, link
-from ergowalk.gait.loads import Sharing
-from ergowalk.transcription.collocation import Samples
+from ergowalk.mechanics.kinematics import BodyMotion, LegMotion, Rotation, link
+from ergowalk.transcription.curves import Samples
 from ergowalk.transcription.phases import Instant, State
-from ergowalk.transcription.walking import Walker
+from ergowalk.transcription.walker import Walker
 
 Array = NDArray[np.float64]
 
@@ -43,9 +43,7 @@ def body_motion(walker: Walker, phase: Phase, samples: Samples) -> BodyMotion:
     )
 
 
-def load_sharing(
-    walker: Walker, phase: Phase, samples: Samples, motion: BodyMotion
-) -> Sharing:
+def load_sharing(walker: Walker, phase: Phase, samples: Samples, motion: BodyMotion) -> Sharing:
     """What the trailing foot carries [N]: from its ankle and metatarsal moments.
 
     The moments are continuous and piecewise linear, so the force is as smooth as the motion.
@@ -67,11 +65,11 @@ def load_sharing(
 def _with_arrays(motion: BodyMotion, zero: Array) -> BodyMotion:
     """Constants (a flat foot's angle) spread over all instants."""
 
-    def spread(x):  # type: ignore[no-untyped-def]
-        return type(x)(x.angle + zero, x.rate + zero, x.acceleration + zero)
+    def spread(x: Rotation) -> Rotation:
+        return Rotation(x.angle + zero, x.rate + zero, x.acceleration + zero)
 
-    legs = tuple(
+    one, two = (
         LegMotion(spread(g.thigh), spread(g.shank), spread(g.foot), spread(g.toes))
         for g in motion.legs
     )
-    return BodyMotion(motion.hip, spread(motion.trunk), (legs[0], legs[1]))
+    return BodyMotion(motion.hip, spread(motion.trunk), (one, two))

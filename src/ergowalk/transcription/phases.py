@@ -97,8 +97,8 @@ class PhaseModel:
         Gauss point of every element. With ``path_everywhere`` they may also use algebraics, and
         are asked at all Gauss points (at mesh points ``algebraics`` is then empty).
     at_ends
-        Inequalities at both ends of each element, where algebraics are extrapolated from the
-        Gauss points: without them a force may leak between the points.
+        Inequalities at both ends of each element and between its Gauss points, from which
+        algebraics are extrapolated: without them a force leaks between the points.
     """
 
     name: str

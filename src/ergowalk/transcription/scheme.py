@@ -56,7 +56,6 @@ class GaussScheme:
     def _evaluate(self, integrations: int, s: ArrayLike) -> Array:
         s = np.atleast_1d(np.asarray(s, dtype=float))
         columns = [
-            (b.integ(integrations) if integrations else b)(s) * np.ones_like(s)
-            for b in self._basis
+            (b.integ(integrations) if integrations else b)(s) * np.ones_like(s) for b in self._basis
         ]
         return np.stack(columns, axis=-1)

@@ -12,17 +12,17 @@ from ergowalk.errors import ProblemError
 from ergowalk.problem import GaitProblem
 from ergowalk.solution import Solution
 from ergowalk.solution.progress import Report
-from ergowalk.solve.answer import dense_energy, dense_gait, describe, rhythm_of
-from ergowalk.solve.stages import Effort, OrderSearch, StageResult
-from ergowalk.transcription.walking import Smoothing
+from ergowalk.solving.answer import dense_energy, dense_gait, describe, rhythm_of
+from ergowalk.solving.stages import Effort, OrderSearch, StageResult
+from ergowalk.transcription.walker import Smoothing
 
-COARSE, FINAL, FINER = 0.5, 1.0, 1.25
-"""Mesh levels of the search, of the reported gait, and of the check."""
+COARSE, FIRST, FINAL, FINER = 0.42, 0.7, 1.1, 1.25
+"""Mesh levels of the search, of the first fine mesh, of the reported gait, and of the check."""
 
 MESH_TOLERANCE = 0.01
 """E may differ by this share between the reported and the next finer mesh."""
 
-IMPULSIVE_LEVELS = (0.5, 0.8, 1.25)
+IMPULSIVE_LEVELS = (0.42, 0.7, 1.1)
 """Meshes on which a problem without moment-rate bound or cost is shown."""
 
 
@@ -70,15 +70,11 @@ def solve(
         )
     effort, weights = Effort(), smoothing or Smoothing()
     searches = [
-        OrderSearch(problem, order, weights, effort, progress)
-        for order in problem.rhythm.orders()
+        OrderSearch(problem, order, weights, effort, progress) for order in problem.rhythm.orders()
     ]
     candidates = [_coarse(search) for search in searches]
     best = min(candidates, key=lambda c: (not c.result.minimum.converged, c.result.energy_at_nodes))
-    if not problem.limits.bounds_moment_rate:
-        gait = _show_impulses(best)
-    else:
-        gait = _refine(best)
+    gait = _show_impulses(best) if not problem.limits.bounds_moment_rate else _refine(best)
     return _finished(gait, candidates, effort, weights)
 
 
@@ -129,13 +125,18 @@ def _refine(coarse: Candidate) -> Gait:
     _, first = _record(coarse)
     if not coarse.result.minimum.converged:
         return _failed(coarse, [], "on the coarse mesh")
-    final = Candidate(search, search.refined(coarse.result, FINAL))
-    if not final.result.minimum.converged:
-        return _failed(final, [first], "on the final mesh")
+    history = [first]
+    final = coarse
+    for level in (FIRST, FINAL):
+        final = Candidate(search, search.refined(final.result, level))
+        if not final.result.minimum.converged:
+            return _failed(final, history, f"on {final.result.elements} elements")
+        if level != FINAL:
+            history.append(_record(final)[1])
     dataset, reported = _record(final, final=True)
     check = Candidate(search, search.refined(final.result, FINER))
     _, finer = _record(check, finer=True)
-    history = [first, reported, finer]
+    history += [reported, finer]
     if not check.result.minimum.converged:
         status = (
             f"converged on {reported['elements']} elements, but the check on "
@@ -242,7 +243,7 @@ def _finished(
         failed = ", ".join(line.key for line in report.failed)
         dataset.attrs["solver_status"] += f"; the audit rejects it: {failed}"
     dataset.attrs["acceptable"] = int(accepted)
-    return Solution(dataset)
+    return Solution(dataset, problem.folder)
 
 
 def _json(value: object) -> str:

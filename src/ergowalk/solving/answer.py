@@ -14,9 +14,9 @@ from ergowalk.problem import GaitProblem
 from ergowalk.problem.files import problem_to_toml
 from ergowalk.solution.energy import joint_energies
 from ergowalk.solution.stride import Piece, stride_dataset
-from ergowalk.transcription.collocation import Trajectory
+from ergowalk.transcription.curves import Trajectory
 from ergowalk.transcription.motion import body_motion, load_sharing
-from ergowalk.transcription.walking import Walker
+from ergowalk.transcription.walker import Walker
 
 SAMPLES = 9
 """Samples of each element, both ends included."""

@@ -13,21 +13,19 @@ from ergowalk.problem import GaitProblem
 from ergowalk.problem.objective import energy_per_metre
 from ergowalk.solution.progress import Progress, Report
 from ergowalk.solvers.ipopt import Ipopt, Minimum
-from ergowalk.transcription.collocation import Collocation, Guess, PhaseKernel, Trajectory
+from ergowalk.transcription.collocation import Collocation
+from ergowalk.transcription.curves import Guess, Trajectory
 from ergowalk.transcription.guess import (
     human_guess,
     loaded_guess,
     starting_rhythm,
     starting_times,
 )
+from ergowalk.transcription.kernel import PhaseKernel
 from ergowalk.transcription.mesh import walking_mesh
 from ergowalk.transcription.phases import PhasedProblem
-from ergowalk.transcription.walking import (
-    Smoothing,
-    Walker,
-    kinematic_problem,
-    walking_problem,
-)
+from ergowalk.transcription.walker import Smoothing, Walker
+from ergowalk.transcription.walking import kinematic_problem, walking_problem
 
 COARSE_POINTS, FINE_POINTS = 2, 3
 """Gauss points per element while searching, and for the reported gait."""
@@ -92,7 +90,7 @@ class OrderSearch:
         times = starting_times(self.problem, starting_rhythm(self.problem, self.order))
         phased = with_times(kinematic_problem(self.problem, self.order), times)
         guess = human_guess(self.walker, self.order, times)
-        return self._run("fit to human means", phased, 0.45, 2, guess, times, Ipopt()).trajectory
+        return self._run("fit to human means", phased, 0.4, 2, guess, times, Ipopt()).trajectory
 
     def fixed_rhythm(self, fit: Trajectory, level: float) -> StageResult:
         """First dynamics: from the fit, rhythm held."""
@@ -107,7 +105,13 @@ class OrderSearch:
         curves = start.trajectory
         solver = Ipopt(tolerance=1e-5)
         return self._run(
-            "rhythm free", self.phased, level, COARSE_POINTS, curves.as_guess(), curves.times, solver
+            "rhythm free",
+            self.phased,
+            level,
+            FINE_POINTS,
+            curves.as_guess(),
+            curves.times,
+            solver,
         )
 
     def refined(self, start: StageResult, level: float, points: int = FINE_POINTS) -> StageResult:
@@ -117,9 +121,9 @@ class OrderSearch:
         where it stopped.
         """
         curves, before = start.trajectory, None
-        solver = Ipopt(tolerance=1e-6)
+        solver = Ipopt(tolerance=1e-6, strategy="monotone", barrier_start=1e-3, push=1e-4)
         if start.points == points:
-            before, solver = start, replace(solver, strategy="monotone", barrier_start=1e-5)
+            before, solver = start, replace(solver, barrier_start=1e-5)
         stage = f"mesh level {level:g}"
         return self._run(
             stage, self.phased, level, points, curves.as_guess(), curves.times, solver, before
@@ -157,9 +161,7 @@ class OrderSearch:
         )
 
     def _energy(self, objective: float) -> float:
-        energy: float = energy_per_metre(
-            objective * self.walker.mass, self.problem.step_length_m
-        )
+        energy: float = energy_per_metre(objective * self.walker.mass, self.problem.step_length_m)
         return energy
 
     def _monitor(self, stage: str, elements: int):  # type: ignore[no-untyped-def]

@@ -1,5 +1,5 @@
 """The one verb: a gait problem becomes a solution."""
 
-from ergowalk.solve.verb import solve
+from ergowalk.solving.verb import solve
 
 __all__ = ["solve"]

@@ -1,0 +1,201 @@
+"""The kernel of one element of a phase: what is unknown in it, and what must hold."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from ergowalk.nlp import Kernel
+from ergowalk.transcription.phases import Instant, PhasedProblem, PhaseModel, State, Terms
+from ergowalk.transcription.scheme import GaussScheme
+
+Array = NDArray[np.float64]
+
+BETWEEN = (0.3, 0.7)
+"""Further places, between Gauss points, where forces are checked: they turn sharply there when a
+limit becomes active."""
+
+
+@dataclass(frozen=True)
+class PhaseKernel:
+    """The kernel of a phase with the bounds and labels of its rows."""
+
+    kernel: Kernel
+    lower: Array
+    upper: Array
+    labels: tuple[str, ...]
+    absolute: ca.Function
+    n_abs: int
+
+
+def phase_kernel(phase: PhaseModel, problem: PhasedProblem, scheme: GaussScheme) -> PhaseKernel:
+    """The kernel of one element of a phase."""
+    local = _Local(phase, scheme)
+    inside = _Compiled(phase, phase.inside, "inside")
+    at_ends = _Compiled(phase, phase.at_ends, "at_ends")
+    path_at_mesh = _Compiled(phase, phase.path, "mesh")
+    path = _Compiled(phase, phase.path, "path") if phase.path_everywhere else path_at_mesh
+    rows = _Rows()
+    _continuity(local, rows)
+    cost: Any = 0.0
+    absolutes: list[Any] = []
+    slacks: list[Any] = []
+    scale = phase.absolute_scale
+    for j, (c, w) in enumerate(zip(scheme.points, scheme.weights, strict=True)):
+        arguments = local.arguments(float(c))
+        powers, integrand = inside.add(rows, arguments)
+        if phase.path_everywhere or j == scheme.m // 2:
+            path.add(rows, arguments)
+        n_abs = powers.numel()
+        plus, minus = ca.SX.sym(f"plus_{j}", n_abs), ca.SX.sym(f"minus_{j}", n_abs)
+        rows.add(plus - minus - powers / scale, ["power slacks"] * n_abs, 0.0, 0.0)
+        cost = cost + w * local.h * (scale * ca.sum1(plus + minus) + integrand)
+        absolutes.append(powers / scale)
+        slacks += [plus, minus]
+    path_at_mesh.add(rows, local.arguments(0.0))
+    for place in (0.0, *BETWEEN, 1.0):
+        at_ends.add(rows, local.arguments(place))
+    cost = cost + _control_rates(local, problem, rows)
+    variables = ca.vertcat(local.variables, *slacks)
+    name = phase.name.replace("+", "_")
+    kernel = Kernel(name, variables, local.parameters, cost, ca.vertcat(*rows.expressions))
+    absolute = ca.Function("absolute", [variables, local.parameters], [ca.vertcat(*absolutes)])
+    lower, upper = np.concatenate(rows.lower), np.concatenate(rows.upper)
+    n_abs = absolute.numel_out(0) // scheme.m
+    return PhaseKernel(kernel, lower, upper, tuple(rows.labels), absolute, n_abs)
+
+
+class _Rows:
+    """Constraint rows as they come."""
+
+    def __init__(self) -> None:
+        self.expressions: list[Any] = []
+        self.labels: list[str] = []
+        self.lower: list[Array] = []
+        self.upper: list[Array] = []
+
+    def add(self, expression: Any, labels: Sequence[str], lower: Any, upper: Any) -> None:
+        self.expressions.append(expression)
+        self.labels += labels
+        self.lower.append(np.broadcast_to(np.asarray(lower, dtype=float), len(labels)))
+        self.upper.append(np.broadcast_to(np.asarray(upper, dtype=float), len(labels)))
+
+
+class _Compiled:
+    """A phase function turned once into a CasADi function, then called at many instants.
+
+    ``kind`` "mesh" hides the algebraic variables, which do not exist at mesh points.
+    """
+
+    def __init__(self, phase: PhaseModel, function: Callable[[Instant], Terms], kind: str) -> None:
+        names = [c.name for c in phase.coordinates]
+        controls = [u.name for u in phase.controls]
+        algebraics = [z.name for z in phase.algebraics]
+        sizes = (1, *[len(names)] * 3, *[len(controls)] * 2, len(algebraics))
+        symbols = [ca.SX.sym(f"s{i}", n) for i, n in enumerate(sizes)]
+        t, value, rate, acceleration, control, slope, z = symbols
+        terms = function(
+            Instant(
+                t,
+                {n: State(value[i], rate[i], acceleration[i]) for i, n in enumerate(names)},
+                {n: control[i] for i, n in enumerate(controls)},
+                {} if kind == "mesh" else {n: z[i] for i, n in enumerate(algebraics)},
+                {n: slope[i] for i, n in enumerate(controls)},
+            )
+        )
+        self.labels = [row[0] for row in terms.rows]
+        self.lower = np.array([row[2] for row in terms.rows])
+        self.upper = np.array([row[3] for row in terms.rows])
+        outputs = [
+            ca.vertcat(*(ca.SX(row[1]) for row in terms.rows)),
+            ca.vertcat(*(ca.SX(e) for e in terms.absolute)),
+            ca.SX(terms.integrand),
+        ]
+        self.function = ca.Function(kind, symbols, outputs)
+
+    def add(self, rows: _Rows, arguments: list[Any]) -> tuple[Any, Any]:
+        """Add the rows at an instant; returns absolute-value arguments and integrand."""
+        values, absolute, integrand = self.function(*arguments)
+        if self.labels:
+            rows.add(values, self.labels, self.lower, self.upper)
+        return absolute, integrand
+
+
+class _Local:
+    """Symbols of one element, and the curves that they define inside it."""
+
+    def __init__(self, phase: PhaseModel, scheme: GaussScheme) -> None:
+        self.phase, self.scheme = phase, scheme
+        n_q, n_u, n_z = len(phase.coordinates), len(phase.controls), len(phase.algebraics)
+        self.t0, self.t1 = ca.SX.sym("t0"), ca.SX.sym("t1")
+        self.parameters = ca.SX.sym("part", 2)
+        scales = [np.ones(n_q), np.array([c.rate_scale for c in phase.coordinates])]
+        scales.append(np.array([u.scale for u in phase.controls]))
+        raw_left = [ca.SX.sym(f"left_{i}", n) for i, n in enumerate((n_q, n_q, n_u))]
+        raw_right = [ca.SX.sym(f"right_{i}", n) for i, n in enumerate((n_q, n_q, n_u))]
+        raw_bulge = ca.SX.sym("bulge", n_u)
+        self.bulge = scales[2] * raw_bulge
+        raw_a = [ca.SX.sym(f"a_{j}", n_q) for j in range(scheme.m)]
+        raw_z = [ca.SX.sym(f"z_{j}", n_z) for j in range(scheme.m)]
+        self.left = [s * v for s, v in zip(scales, raw_left, strict=True)]
+        self.right = [s * v for s, v in zip(scales, raw_right, strict=True)]
+        a_scale = np.array([c.acceleration_scale for c in phase.coordinates])
+        z_scale = np.array([z.scale for z in phase.algebraics])
+        self.a = ca.horzcat(*(a_scale * v for v in raw_a))
+        self.z = ca.horzcat(*(z_scale * v for v in raw_z))
+        inner = [v for pair in zip(raw_a, raw_z, strict=True) for v in pair]
+        self.variables = ca.vertcat(self.t0, self.t1, *raw_left, *raw_right, raw_bulge, *inner)
+        self.duration = self.t1 - self.t0
+        self.h = self.duration * self.parameters[1]
+
+    def arguments(self, s: float) -> list[Any]:
+        """Time, values, rates, accelerations, controls, slopes, algebraics at local fraction s."""
+        scheme = self.scheme
+        first, second = scheme.first_integral(s)[0], scheme.second_integral(s)[0]
+        weight = ca.DM(scheme.value(s)[0])
+        slopes = [self.slope(i, s) for i in range(len(self.phase.controls))]
+        return [
+            self.t0 + self.duration * (self.parameters[0] + self.parameters[1] * s),
+            self.left[0] + self.h * s * self.left[1] + self.h**2 * (self.a @ ca.DM(second)),
+            self.left[1] + self.h * (self.a @ ca.DM(first)),
+            self.a @ weight,
+            self.left[2] + s * (self.right[2] - self.left[2]) + 4 * s * (1 - s) * self.bulge,
+            ca.vertcat(*slopes),
+            self.z @ weight,
+        ]
+
+    def slope(self, i: int, s: float) -> Any:
+        """Time derivative of control ``i`` at local fraction s: linear in the element."""
+        chord = self.right[2][i] - self.left[2][i]
+        return (chord + 4 * (1 - 2 * s) * self.bulge[i]) / self.h
+
+
+def _continuity(local: _Local, rows: _Rows) -> None:
+    """Value and rate at the right end are the exact integrals of the acceleration."""
+    _, value, rate, *_ = local.arguments(1.0)
+    scale = np.array([c.rate_scale for c in local.phase.coordinates])
+    labels = ["continuity"] * len(scale)
+    rows.add(local.right[0] - value, labels, 0.0, 0.0)
+    rows.add((local.right[1] - rate) / scale, labels, 0.0, 0.0)
+
+
+def _control_rates(local: _Local, problem: PhasedProblem, rows: _Rows) -> Any:
+    """Bounds on, and cost of, the slopes of the controls in this element.
+
+    A slope is linear, so it is largest at an end; the integral of its square is exact by
+    Simpson's rule.
+    """
+    cost: Any = 0.0
+    for i, u in enumerate(local.phase.controls):
+        start, middle, end = (local.slope(i, s) for s in (0.0, 0.5, 1.0))
+        if u.name in problem.control_rates:
+            bound = problem.control_rates[u.name]
+            rows.add(ca.vertcat(start, end) / bound, ["moment rate"] * 2, -1.0, 1.0)
+        square = (start**2 + 4 * middle**2 + end**2) / 6
+        cost = cost + problem.control_rate_cost.get(u.name, 0.0) * local.h * square
+    return cost

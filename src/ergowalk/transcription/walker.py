@@ -1,0 +1,342 @@
+"""The walker of a gait problem as functions of an instant: unknowns, motion, what must hold."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ergowalk.body import LegParameters
+from ergowalk.corridors import ANGLES, Corridor
+from ergowalk.gait.footprints import leading_print, trailing_print
+from ergowalk.gait.loads import vertical_share
+from ergowalk.gait.rhythm import Contact, Phase
+from ergowalk.mechanics.dynamics import (
+    Coefficients,
+    LegMoments,
+    applied_load,
+    coefficients,
+    inertial_load,
+    total_reaction,
+)
+from ergowalk.mechanics.foot import foot_balance, pressure_moment, toe_balance
+from ergowalk.mechanics.kinematics import (
+    HALF_PI,
+    BodyMotion,
+    LegMotion,
+    LegPoints,
+    Rotation,
+    Vector,
+    hip_over_contact,
+    joint_angles,
+    leg_points,
+    sole,
+)
+from ergowalk.problem import JOINTS, DoubleSupport, GaitProblem
+from ergowalk.problem import constraints as c
+from ergowalk.problem.objective import eq10_joint_powers
+from ergowalk.transcription.phases import (
+    Coordinate,
+    Instant,
+    State,
+    Terms,
+    Unknown,
+)
+
+RATE, ACCELERATION, FORCE, METRE = 3.0, 30.0, 10.0, 0.1
+"""Typical sizes by which unknowns and rows are divided (rad/s, rad/s2, N/kg, m)."""
+
+
+@dataclass(frozen=True)
+class Smoothing:
+    """Small costs that single out one of many nearly equal optima; they are not part of E.
+
+    ``moment_rate`` weighs the squared rates of hip, knee and ankle moments per kg,
+    ``metatarsal_rate`` those of the metatarsal moment, which has no limit by default, and
+    ``swing_foot`` the squared acceleration of the massless swing foot, which nothing else sees.
+    The integrals over half a stride are added to the absolute work per kg [J/kg].
+    """
+
+    moment_rate: float = 1e-5
+    metatarsal_rate: float = 1e-4
+    swing_foot: float = 1e-6
+
+
+class Walker:
+    """What all phases of a gait problem share, and the functions of an instant."""
+
+    def __init__(self, problem: GaitProblem, smoothing: Smoothing) -> None:
+        self.problem, self.smoothing = problem, smoothing
+        self.leg: LegParameters = problem.body.leg(0)
+        self.mass, self.gravity = problem.body.total_mass, problem.body.gravity_m_s2
+        self.coefficients: Coefficients = coefficients(problem.body)
+        self.corridors: dict[str, Corridor] = problem.angle_corridors()
+        self.prints = (
+            leading_print(self.leg),
+            trailing_print(self.leg, problem.step_length_m),
+        )
+        self.flat = HALF_PI - self.leg.foot_angle
+        self.linear_sharing = problem.double_support is DoubleSupport.LINEAR
+
+    # --- unknowns -------------------------------------------------------------------------
+
+    def coordinates(self, phase: Phase) -> tuple[Coordinate, ...]:
+        """Angles of this phase; a flat foot has none, a foot on its toe tip follows the ankle."""
+        names = ["trunk", "thigh_1", "shank_1", "thigh_2", "shank_2"]
+        if phase.legs[0] is not Contact.FLAT:
+            names.append("foot_1")
+        if phase.legs[1] is Contact.SWING:
+            names.append("foot_2")
+        return tuple(Coordinate(n, rate_scale=RATE, acceleration_scale=ACCELERATION) for n in names)
+
+    def controls(self, phase: Phase) -> tuple[Unknown, ...]:
+        """Joint moments per kg that can do work, or carry load over the toes."""
+        names = ["hip_1", "knee_1", "ankle_1", "hip_2", "knee_2"]
+        if phase.legs[0] is Contact.FOREFOOT:
+            names.append("metatarsal_1")
+        if phase.legs[1] is Contact.TOE:
+            names += ["ankle_2", "metatarsal_2"]
+        limits = self.problem.limits.moment_nm_per_kg
+        bounds = {n: limits.of(n[:-2]) or np.inf for n in names}
+        unknowns = [Unknown(n, -bounds[n], bounds[n]) for n in names]
+        if phase.legs[1] is Contact.TOE and self.linear_sharing:
+            unknowns += [Unknown(n) for n in SHARING]
+        return tuple(unknowns)
+
+    def algebraics(self, phase: Phase) -> tuple[Unknown, ...]:
+        """Ground reactions per kg, and the trailing foot while it stands on its toe tip."""
+        cap = self.problem.limits.vertical_reaction_body_weights
+        highest = np.inf if cap == "off" else cap * self.gravity
+        unknowns = []
+        for i, contact in enumerate(phase.legs, start=1):
+            if contact is not Contact.SWING:
+                unknowns.append(Unknown(f"reaction_x_{i}", scale=FORCE))
+                unknowns.append(Unknown(f"reaction_y_{i}", 0.0, highest, FORCE))
+        if phase.legs[1] is Contact.TOE:
+            unknowns += [Unknown("foot_2"), Unknown("toes_2")]
+            unknowns += [Unknown(n, scale=RATE) for n in ("foot_2_rate", "toes_2_rate")]
+        return tuple(unknowns)
+
+    # --- the motion at an instant ---------------------------------------------------------
+
+    def motion(self, phase: Phase, instant: Instant) -> BodyMotion:
+        """The whole walker from the minimal coordinates."""
+        q = instant.coordinates
+        foot_1 = _rotation(q["foot_1"]) if "foot_1" in q else Rotation(self.flat)
+        in_line = c.eq7_toes_in_line(phase.legs[0])
+        toes_1 = sole(self.leg, foot_1) if in_line else Rotation(HALF_PI)
+        if phase.legs[1] is Contact.SWING:
+            foot_2 = _rotation(q["foot_2"])
+            toes_2 = sole(self.leg, foot_2)
+        else:
+            z = instant.algebraics
+            foot_2 = Rotation(z.get("foot_2", 0.0), z.get("foot_2_rate", 0.0))
+            toes_2 = Rotation(z.get("toes_2", 0.0), z.get("toes_2_rate", 0.0))
+        legs = (
+            LegMotion(_rotation(q["thigh_1"]), _rotation(q["shank_1"]), foot_1, toes_1),
+            LegMotion(_rotation(q["thigh_2"]), _rotation(q["shank_2"]), foot_2, toes_2),
+        )
+        return BodyMotion(self.hip(phase.legs[0], legs[0]), _rotation(q["trunk"]), legs)
+
+    def hip(self, contact: Contact, leg: LegMotion) -> Any:
+        """Hip point over the print of leg 1."""
+        if contact is Contact.HEEL:
+            return hip_over_contact(self.leg, leg, "heel", (self.prints[0].heel, 0.0))
+        return hip_over_contact(self.leg, leg, "metatarsal", (self.prints[0].metatarsal, 0.0))
+
+    def points(self, motion: BodyMotion) -> tuple[LegPoints, LegPoints]:
+        """Points of both legs."""
+        one, two = (leg_points(self.leg, leg, motion.hip) for leg in motion.legs)
+        return one, two
+
+    # --- what must hold -------------------------------------------------------------------
+
+    def corridor_rows(self, phase: Phase, instant: Instant, motion: BodyMotion) -> Terms:
+        """(6) for every joint whose angle is known at this instant."""
+        terms = Terms()
+        for label, place in self.corridor_places(phase, instant, motion):
+            terms.between(label, place, -1.0, 1.0)
+        return terms
+
+    def corridor_places(
+        self, phase: Phase, instant: Instant, motion: BodyMotion
+    ) -> list[tuple[str, Any]]:
+        """Places of hip, knee, ankle angles in their corridors, -1 ... 1."""
+        fraction = instant.time / self.problem.stride_time_s
+        degree = max(x.mean.degree for x in self.corridors.values())
+        places = []
+        for i, leg in enumerate(motion.legs):
+            known = i == 0 or phase.legs[1] is Contact.SWING or "foot_2" in instant.algebraics
+            waves = c.harmonics(fraction, degree, half_a_stride_later=i == 1)
+            angles = joint_angles(
+                self.leg,
+                motion.trunk.angle,
+                *(r.angle for r in (leg.thigh, leg.shank, leg.foot, leg.toes)),
+            )
+            for joint, angle in zip(ANGLES, angles, strict=False):
+                if joint != "ankle" or known:
+                    place = c.eq6_corridor_position(angle, self.corridors[joint], waves)
+                    places.append((f"corridor {joint} (6)", place))
+        return places
+
+    def clearance_rows(self, phase: Phase, instant: Instant, motion: BodyMotion) -> Terms:
+        """(4): no point of a foot below the ground; (7): toes bend only upward."""
+        terms = Terms()
+        points = self.points(motion)
+        for i, contact in enumerate(phase.legs):
+            if i == 0 or contact is Contact.SWING or "foot_2" in instant.algebraics:
+                heights = c.eq4_clearances(contact, points[i])
+                terms.nonnegative("clearance (4)", *(y / METRE for y in heights))
+                if contact is Contact.TOE:
+                    bend = c.eq7_toe_rotation(contact, self.leg, motion.legs[i])
+                    terms.nonnegative("toe rotation (7)", bend)
+        return terms
+
+    def friction_rows(self, phase: Phase, instant: Instant) -> Terms:
+        """Friction cone of each loaded foot."""
+        terms = Terms()
+        coefficient, reactions = self.problem.limits.friction_coefficient, self.reactions(instant)
+        for contact, reaction in zip(phase.legs, reactions, strict=True):
+            if contact is not Contact.SWING and coefficient != "off":
+                cone = c.limit_friction(reaction, coefficient)
+                terms.nonnegative("friction", *(x / FORCE for x in cone))
+        return terms
+
+    def load_rows(self, phase: Phase, instant: Instant, motion: BodyMotion) -> Terms:
+        """(8), the cap, and (9) at the ends of elements.
+
+        There the forces are those that inverse dynamics finds for the motion, not
+        extrapolations: without this they overshoot between the points of two elements.
+        """
+        terms, limits = Terms(), self.algebraics(phase)
+        _, trailing = self.reactions(instant)
+        if phase.legs == (Contact.HEEL, Contact.TOE):
+            pressure = self.prints[1].toe_tip + instant.controls.get("pressure_shift", 0.0)
+            two = (self.mass * trailing[0], self.mass * trailing[1])
+            share = vertical_share(self.problem.body, motion, two, pressure)
+            trailing = (trailing[0], share / self.mass)
+        total = total_reaction(self.coefficients, motion)
+        leading = tuple(a / self.mass - b for a, b in zip(total, trailing, strict=True))
+        reactions = (leading, trailing)
+        for i, contact in enumerate(phase.legs):
+            if contact is not Contact.SWING:
+                highest = next(z.upper for z in limits if z.name == f"reaction_y_{i + 1}")
+                value = c.eq8_vertical_reaction(reactions[i]) / FORCE
+                terms.between("vertical reaction (8)", value, 0.0, highest / FORCE)
+        terms.rows += self.pressure_rows(phase, instant, motion, reactions).rows
+        return terms
+
+    def pressure_rows(
+        self, phase: Phase, instant: Instant, motion: BodyMotion, reactions: Any
+    ) -> Terms:
+        """(9) where the centre of pressure has room; where it has none it is an equation."""
+        terms = Terms()
+        points, moments = self.points(motion), self.moments(phase, instant)
+        for i, contact in enumerate(phase.legs):
+            if contact in (Contact.FLAT, Contact.FOREFOOT):
+                pressure = pressure_moment(points[i], moments[i].ankle, reactions[i])
+                edges = c.eq9_pressure(contact, self.prints[i], pressure, reactions[i])
+                terms.nonnegative("centre of pressure (9)", *edges)
+        return terms
+
+    def dynamics_rows(self, phase: Phase, instant: Instant, motion: BodyMotion) -> Terms:
+        """(1), the foot lines included, per kg; and powers of (10)."""
+        terms = Terms()
+        moments, reactions = self.moments(phase, instant), self.reactions(instant)
+        one, two = (LegMoments(*(self.mass * getattr(m, j) for j in JOINTS)) for m in moments)
+        forces = (_scaled(self.mass, reactions[0]), _scaled(self.mass, reactions[1]))
+        left = inertial_load(self.coefficients, motion)
+        right = applied_load(self.coefficients, motion, (one, two), forces)
+        terms.equal(
+            "equations of motion (1)",
+            *((a - b) / self.mass for a, b in zip(left, right, strict=True)),
+        )
+        points = self.points(motion)
+        if phase.legs[0] is Contact.HEEL:
+            pressure = pressure_moment(points[0], moments[0].ankle, reactions[0])
+            edges = c.eq9_pressure(Contact.HEEL, self.prints[0], pressure, reactions[0])
+            terms.equal("centre of pressure (9)", edges[0])
+        if phase.legs[0] is Contact.FOREFOOT:
+            balance = foot_balance(points[0], moments[0].ankle, moments[0].metatarsal, reactions[0])
+            terms.equal("foot (1)", balance)
+        if phase.legs[1] is Contact.TOE:
+            self._toe_phase_rows(terms, instant, points[1], moments[1], reactions[1])
+        for contact, leg, moment in zip(phase.legs, motion.legs, moments, strict=True):
+            powers = eq10_joint_powers(moment, motion.trunk, leg)
+            terms.absolute += powers[: _WORKING_JOINTS[contact]]
+        if "foot_2" in instant.coordinates:
+            acceleration = instant.coordinates["foot_2"].acceleration
+            terms.integrand = self.smoothing.swing_foot * acceleration**2
+        return terms
+
+    def _toe_phase_rows(
+        self, terms: Terms, instant: Instant, points: LegPoints, moments: LegMoments, reaction: Any
+    ) -> None:
+        """Trailing foot: load through the toe tip, or through the moving point of (12)."""
+        u, slope = instant.controls, instant.control_slopes
+        x_r = self.prints[1].toe_tip
+        if self.linear_sharing:
+            x_r = x_r + u["pressure_shift"]
+            terms.equal("sharing (12)", (reaction[0] - u["reaction_share"]) / FORCE)
+            terms.equal("sharing (12)", slope["pressure_shift"] - u["pressure_slope"])
+            terms.equal("sharing (12)", slope["reaction_share"] - u["reaction_slope"])
+            terms.equal("sharing (12)", slope["pressure_slope"], slope["reaction_slope"])
+        terms.equal("foot (1)", foot_balance(points, moments.ankle, moments.metatarsal, reaction))
+        terms.equal("foot (1)", toe_balance(points, moments.metatarsal, reaction, x_r))
+        self.toe_contact_rows(terms, points)
+
+    def toe_contact_rows(self, terms: Terms, points: LegPoints) -> None:
+        """(4): the toe tip of leg 2 rests."""
+        rest = c.eq4_resting_point(Contact.TOE, points, self.prints[1])
+        terms.equal("toe contact (4)", *(e / METRE for e in rest[:2]), *rest[2:])
+
+    def moments(self, phase: Phase, instant: Instant) -> tuple[LegMoments, LegMoments]:
+        """Joint moments of both legs per kg; those that do not occur are zero."""
+        one, two = (
+            LegMoments(*(instant.controls.get(f"{joint}_{i}", 0.0) for joint in JOINTS))
+            for i in (1, 2)
+        )
+        return one, two
+
+    def reactions(self, instant: Instant) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
+        """Ground reactions of both legs per kg."""
+        z = instant.algebraics
+        one, two = ((z.get(f"reaction_x_{i}", 0.0), z.get(f"reaction_y_{i}", 0.0)) for i in (1, 2))
+        return one, two
+
+    def toe_off(self, contact: Contact, instant: Instant) -> Terms:
+        """(4), (7) at toe-off of leg 2: toe tip at rest, toes and their rate in line."""
+        terms = Terms()
+        motion = self.motion(Phase((contact, Contact.SWING), "", ""), instant)
+        self.toe_contact_rows(terms, self.points(motion)[1])
+        return terms
+
+    def landing(self, instant: Instant) -> Terms:
+        """(5) at T/2."""
+        terms = Terms()
+        motion = self.motion(Phase((Contact.FOREFOOT, Contact.SWING), "", ""), instant)
+        rest = c.eq5_landing(self.points(motion)[1], self.problem.step_length_m)
+        terms.equal("landing (5)", *(e / METRE for e in rest[:2]), *rest[2:])
+        return terms
+
+
+_WORKING_JOINTS = {
+    Contact.SWING: 2,
+    Contact.HEEL: 3,
+    Contact.FLAT: 3,
+    Contact.FOREFOOT: 4,
+    Contact.TOE: 4,
+}
+"""How many of hip, knee, ankle, metatarsal joint can do work in each contact."""
+
+SHARING = ("reaction_share", "reaction_slope", "pressure_shift", "pressure_slope")
+"""Unknowns of the linear sharing (12): two lines in time and their slopes."""
+
+
+def _rotation(state: State) -> Rotation:
+    return Rotation(state.value, state.rate, state.acceleration)
+
+
+def _scaled(factor: float, vector: Vector) -> Vector:
+    return factor * vector[0], factor * vector[1]

@@ -83,7 +83,7 @@ def _entry(name: str, path: str) -> str:
     place, attribute = path.rsplit(".", 1)
     module = importlib.import_module(place)
     thing = getattr(module, attribute)
-    if inspect.ismodule(thing):  # a function that shares its name with the package around it
+    if False:
         thing = getattr(thing, attribute)
     parts = [f"## {name}", f"`from {place} import {attribute}`"]
     if inspect.isfunction(thing):

@@ -12,7 +12,6 @@ from functools import cache
 import ergowalk
 from blocks import ROOT, fill, pages, table
 from ergowalk.problem import GaitProblem, JointBounds
-from ergowalk.solving import solve
 
 PRINTED = ergowalk.preset("berbyuk2002-rhythm")
 
@@ -20,7 +19,7 @@ PRINTED = ergowalk.preset("berbyuk2002-rhythm")
 @cache
 def solution(problem: GaitProblem) -> ergowalk.Solution:
     """A solved problem; says so on standard error."""
-    found = solve(problem)
+    found = ergowalk.solve(problem)
     print(f"{problem.name}: {found.status}", file=sys.stderr, flush=True)
     return found
 

@@ -83,8 +83,6 @@ def _entry(name: str, path: str) -> str:
     place, attribute = path.rsplit(".", 1)
     module = importlib.import_module(place)
     thing = getattr(module, attribute)
-    if False:
-        thing = getattr(thing, attribute)
     parts = [f"## {name}", f"`from {place} import {attribute}`"]
     if inspect.isfunction(thing):
         parts.append(fenced(f"{name}{_signature(thing)}"))

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ergowalk.transcription.collocation import Collocation
 from ergowalk.transcription.curves import Guess, Samples
-from ergowalk.transcription.kernel import PhaseKernel
+from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.phases import (
     Coordinate,
     Instant,
@@ -313,7 +313,7 @@ def test_a_constraint_that_is_broken_is_named() -> None:
 
 
 def test_a_finer_mesh_uses_the_same_kernels() -> None:
-    kernels: dict[tuple[str, int], PhaseKernel] = {}
+    kernels = KernelStore()
     one = Collocation(PROBLEM, MESH, 2, kernels)
     two = Collocation(PROBLEM, (np.linspace(0, 1, 9), MESH[1]), 2, kernels)
     assert all(a is b for a, b in zip(one.kernels, two.kernels, strict=True))

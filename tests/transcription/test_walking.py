@@ -16,7 +16,7 @@ from ergowalk.solving.stages import Effort, OrderSearch
 from ergowalk.transcription.collocation import Collocation
 from ergowalk.transcription.curves import Samples, Trajectory
 from ergowalk.transcription.guess import loaded_guess, starting_rhythm, starting_times
-from ergowalk.transcription.kernel import PhaseKernel
+from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.mesh import walking_mesh
 from ergowalk.transcription.motion import body_motion, load_sharing
 from ergowalk.transcription.phases import Instant, State
@@ -29,7 +29,7 @@ PROBLEM = preset("berbyuk2002")
 ORDERS = tuple(PhaseOrder)
 ORDER_NAMES = [str(order) for order in ORDERS]
 
-KERNELS: dict[tuple[str, int], PhaseKernel] = {}
+KERNELS = KernelStore()
 """Of :data:`PROBLEM`; they are the same in both orders."""
 
 

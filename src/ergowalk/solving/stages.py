@@ -21,7 +21,7 @@ from ergowalk.transcription.guess import (
     starting_rhythm,
     starting_times,
 )
-from ergowalk.transcription.kernel import PhaseKernel
+from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.mesh import walking_mesh
 from ergowalk.transcription.phases import PhasedProblem
 from ergowalk.transcription.walker import Smoothing, Walker
@@ -77,12 +77,13 @@ class OrderSearch:
         smoothing: Smoothing,
         effort: Effort,
         report: Report | None,
+        store: KernelStore | None = None,
     ) -> None:
         self.problem, self.order, self.effort, self.report = problem, order, effort, report
         began = time.process_time()
         self.walker = Walker(problem, smoothing)
         self.phased = walking_problem(problem, order, smoothing)
-        self.kernels: dict[tuple[str, int], PhaseKernel] = {}
+        self.store = KernelStore() if store is None else store
         effort.build_time += time.process_time() - began
 
     def fit(self) -> Trajectory:
@@ -142,7 +143,7 @@ class OrderSearch:
     ) -> StageResult:
         began = time.process_time()
         mesh = walking_mesh(self.order, times, self.problem.stride_time_s, level)
-        collocation = Collocation(phased, mesh, points, self.kernels)
+        collocation = Collocation(phased, mesh, points, self.store)
         programme = collocation.programme
         start = collocation.pack(guess, times)
         _ = programme.oracle

@@ -14,6 +14,7 @@ from ergowalk.solution import Solution
 from ergowalk.solution.progress import Report
 from ergowalk.solving.answer import dense_energy, dense_gait, describe, rhythm_of
 from ergowalk.solving.stages import Effort, OrderSearch, StageResult
+from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.walker import Smoothing
 
 COARSE, FIRST, FINAL, FINER = 0.42, 0.7, 1.1, 1.25
@@ -24,6 +25,10 @@ MESH_TOLERANCE = 0.01
 
 IMPULSIVE_LEVELS = (0.42, 0.7, 1.1)
 """Meshes on which a problem without moment-rate bound or cost is shown."""
+
+
+FAINT = Smoothing(moment_rate=1e-8, metatarsal_rate=1e-8)
+"""Smoothing of a problem without moment-rate bound: too little to hide that it is impulsive."""
 
 
 def solve(
@@ -68,9 +73,11 @@ def solve(
             field="method",
             value=f"{method}/{solver}",
         )
-    effort, weights = Effort(), smoothing or Smoothing()
+    effort, store = Effort(), KernelStore()
+    weights = smoothing or (Smoothing() if problem.limits.bounds_moment_rate else FAINT)
     searches = [
-        OrderSearch(problem, order, weights, effort, progress) for order in problem.rhythm.orders()
+        OrderSearch(problem, order, weights, effort, progress, store)
+        for order in problem.rhythm.orders()
     ]
     candidates = [_coarse(search) for search in searches]
     best = min(candidates, key=lambda c: (not c.result.minimum.converged, c.result.energy_at_nodes))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ergowalk.nlp import Block, Kernel, NonlinearProgramme
 from ergowalk.transcription.curves import Guess, PhaseCurves, Trajectory
-from ergowalk.transcription.kernel import PhaseKernel, phase_kernel
+from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.layout import Layout, Mesh, PhaseIndices, lay_out
 from ergowalk.transcription.phases import Instant, Link, PhasedProblem, State, Terms
 from ergowalk.transcription.scheme import GaussScheme
@@ -28,9 +28,8 @@ class Collocation:
     mesh : one array of element boundaries (0 ... 1) per phase
     m : int
         Gauss points per element.
-    kernels : dict, optional
-        Kernels built before, by (phase name, m); missing ones are added. They depend on the
-        phase functions alone, so a finer mesh reuses them.
+    store : KernelStore, optional
+        Kernels built before; missing ones are added.
     """
 
     def __init__(
@@ -38,14 +37,11 @@ class Collocation:
         problem: PhasedProblem,
         mesh: Mesh,
         m: int,
-        kernels: dict[tuple[str, int], PhaseKernel] | None = None,
+        store: KernelStore | None = None,
     ) -> None:
         self.problem, self.mesh, self.scheme = problem, mesh, GaussScheme(m)
-        cache = {} if kernels is None else kernels
-        for phase in problem.phases:
-            if (phase.name, m) not in cache:
-                cache[phase.name, m] = phase_kernel(phase, problem, self.scheme)
-        self.kernels = tuple(cache[phase.name, m] for phase in problem.phases)
+        store = KernelStore() if store is None else store
+        self.kernels = tuple(store.kernel(p, problem, self.scheme) for p in problem.phases)
         n_abs = tuple(kernel.n_abs for kernel in self.kernels)
         self.layout: Layout = lay_out(problem, mesh, m, n_abs)
 

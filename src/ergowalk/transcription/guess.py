@@ -18,22 +18,27 @@ from ergowalk.transcription.walker import Walker
 Array = NDArray[np.float64]
 
 
+SHORTEST_START = 0.015
+"""Shortest phase of a starting rhythm, as a fraction of T, where the bounds leave room."""
+
+
 def starting_rhythm(problem: GaitProblem, order: PhaseOrder) -> Rhythm:
-    """The printed rhythm inside the bounds; foot-flat and toe-off swapped if the order asks."""
-    start = problem.rhythm.start()
-    early, late = sorted((start.heel_end, start.other_toe_off))
-    first, second = (
-        ("heel_end", "toe_off")
-        if order is PhaseOrder.FLAT_FIRST
-        else (
-            "toe_off",
-            "heel_end",
-        )
-    )
-    shift = {"heel_end": 0.0, "toe_off": 0.5}
-    wanted = {first: early + shift[first], second: late + shift[second]}
-    inside = {n: float(np.clip(v, *problem.rhythm.bounds(n))) for n, v in wanted.items()}
-    return Rhythm(inside["heel_end"], start.heel_off, inside["toe_off"])
+    """The printed rhythm inside the bounds, in the asked order, with room for every phase."""
+    start, bounds = problem.rhythm.start(), problem.rhythm.bounds
+    toe_low, toe_high = bounds("toe_off")
+    ranges = {"heel_end": bounds("heel_end"), "toe_off": (toe_low - 0.5, toe_high - 0.5)}
+    names = ["toe_off", "heel_end"]
+    if order is PhaseOrder.FLAT_FIRST:
+        names.reverse()
+    wanted = sorted((start.heel_end, start.other_toe_off))
+    (low_1, high_1), (low_2, high_2) = (ranges[name] for name in names)
+    first = min(max(wanted[0], low_1), high_1)
+    second = min(max(wanted[1], low_2, first + SHORTEST_START), high_2)
+    first = max(min(first, second - SHORTEST_START), low_1)
+    heel_off_low, heel_off_high = bounds("heel_off")
+    heel_off = min(max(start.heel_off, heel_off_low, second + SHORTEST_START), heel_off_high)
+    instants = dict(zip(names, (first, second), strict=True))
+    return Rhythm(instants["heel_end"], heel_off, instants["toe_off"] + 0.5)
 
 
 def starting_times(problem: GaitProblem, rhythm: Rhythm) -> dict[str, float]:

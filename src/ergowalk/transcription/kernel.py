@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import casadi as ca
@@ -21,6 +21,34 @@ BETWEEN = (0.3, 0.7)
 limit becomes active."""
 
 
+PhaseFunctions = tuple[
+    "CompiledFunction", "CompiledFunction", "CompiledFunction", "CompiledFunction"
+]
+"""Compiled inside, path, path at mesh points, at ends of one phase."""
+
+
+@dataclass
+class KernelStore:
+    """Kernels and compiled functions built before, by phase name (and Gauss points).
+
+    They depend on the phase functions alone: other meshes, other orders of the same phases and
+    other numbers of Gauss points reuse them.
+    """
+
+    functions: dict[str, PhaseFunctions] = field(default_factory=dict)
+    kernels: dict[tuple[str, int], PhaseKernel] = field(default_factory=dict)
+
+    def kernel(self, phase: PhaseModel, problem: PhasedProblem, scheme: GaussScheme) -> PhaseKernel:
+        """The kernel of a phase, built if it is not there yet."""
+        key = (phase.name, scheme.m)
+        if key not in self.kernels:
+            if phase.name not in self.functions:
+                self.functions[phase.name] = compile_phase(phase)
+            functions = self.functions[phase.name]
+            self.kernels[key] = phase_kernel(phase, problem, scheme, functions)
+        return self.kernels[key]
+
+
 @dataclass(frozen=True)
 class PhaseKernel:
     """The kernel of a phase with the bounds and labels of its rows."""
@@ -33,13 +61,15 @@ class PhaseKernel:
     n_abs: int
 
 
-def phase_kernel(phase: PhaseModel, problem: PhasedProblem, scheme: GaussScheme) -> PhaseKernel:
-    """The kernel of one element of a phase."""
+def phase_kernel(
+    phase: PhaseModel,
+    problem: PhasedProblem,
+    scheme: GaussScheme,
+    functions: PhaseFunctions | None = None,
+) -> PhaseKernel:
+    """The kernel of one element of a phase; ``functions`` if they have been compiled before."""
     local = _Local(phase, scheme)
-    inside = _Compiled(phase, phase.inside, "inside")
-    at_ends = _Compiled(phase, phase.at_ends, "at_ends")
-    path_at_mesh = _Compiled(phase, phase.path, "mesh")
-    path = _Compiled(phase, phase.path, "path") if phase.path_everywhere else path_at_mesh
+    inside, path, path_at_mesh, at_ends = functions or compile_phase(phase)
     rows = _Rows()
     _continuity(local, rows)
     cost: Any = 0.0
@@ -61,6 +91,7 @@ def phase_kernel(phase: PhaseModel, problem: PhasedProblem, scheme: GaussScheme)
     for place in (0.0, *BETWEEN, 1.0):
         at_ends.add(rows, local.arguments(place))
     cost = cost + _control_rates(local, problem, rows)
+    _control_bounds(local, rows)
     variables = ca.vertcat(local.variables, *slacks)
     name = phase.name.replace("+", "_")
     kernel = Kernel(name, variables, local.parameters, cost, ca.vertcat(*rows.expressions))
@@ -68,6 +99,14 @@ def phase_kernel(phase: PhaseModel, problem: PhasedProblem, scheme: GaussScheme)
     lower, upper = np.concatenate(rows.lower), np.concatenate(rows.upper)
     n_abs = absolute.numel_out(0) // scheme.m
     return PhaseKernel(kernel, lower, upper, tuple(rows.labels), absolute, n_abs)
+
+
+def compile_phase(phase: PhaseModel) -> PhaseFunctions:
+    """The functions of a phase (inside, path, path at mesh points, at ends), compiled."""
+    at_mesh = CompiledFunction(phase, phase.path, "mesh")
+    path = CompiledFunction(phase, phase.path, "path") if phase.path_everywhere else at_mesh
+    inside = CompiledFunction(phase, phase.inside, "inside")
+    return inside, path, at_mesh, CompiledFunction(phase, phase.at_ends, "at_ends")
 
 
 class _Rows:
@@ -86,7 +125,7 @@ class _Rows:
         self.upper.append(np.broadcast_to(np.asarray(upper, dtype=float), len(labels)))
 
 
-class _Compiled:
+class CompiledFunction:
     """A phase function turned once into a CasADi function, then called at many instants.
 
     ``kind`` "mesh" hides the algebraic variables, which do not exist at mesh points.
@@ -182,6 +221,19 @@ def _continuity(local: _Local, rows: _Rows) -> None:
     labels = ["continuity"] * len(scale)
     rows.add(local.right[0] - value, labels, 0.0, 0.0)
     rows.add((local.right[1] - rate) / scale, labels, 0.0, 0.0)
+
+
+def _control_bounds(local: _Local, rows: _Rows) -> None:
+    """Bounds of the controls inside the element.
+
+    A parabola lies inside the hull of its ends and its middle Bernstein coefficient, so bounding
+    the three bounds all of it.
+    """
+    for i, u in enumerate(local.phase.controls):
+        if np.isfinite(u.lower) or np.isfinite(u.upper):
+            middle = (local.left[2][i] + local.right[2][i]) / 2 + 2 * local.bulge[i]
+            bounds = np.array([u.lower, u.upper]) / u.scale
+            rows.add(middle / u.scale, ["control bounds"], bounds[0], bounds[1])
 
 
 def _control_rates(local: _Local, problem: PhasedProblem, rows: _Rows) -> Any:

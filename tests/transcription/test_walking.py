@@ -15,7 +15,7 @@ from ergowalk.problem import GaitProblem, JointBounds, Limits, RhythmBounds, pre
 from ergowalk.solving.stages import Effort, OrderSearch
 from ergowalk.transcription.collocation import Collocation
 from ergowalk.transcription.curves import Samples, Trajectory
-from ergowalk.transcription.guess import loaded_guess, starting_rhythm, starting_times
+from ergowalk.transcription.guess import human_guess, loaded_guess, starting_rhythm, starting_times
 from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.mesh import walking_mesh
 from ergowalk.transcription.motion import body_motion, load_sharing
@@ -419,6 +419,32 @@ def test_a_flat_foot_is_flat(one_fit: Fit) -> None:
             for turn in (leg.foot, leg.toes):
                 np.testing.assert_array_equal(turn.rate, 0.0)
                 np.testing.assert_array_equal(turn.acceleration, 0.0)
+
+
+def test_the_search_starts_from_the_human_mean_angles(one_fit: Fit) -> None:
+    """Joint angles (6) of the very first guess are the means of the table, trunk upright."""
+    walker, stride = one_fit.walker, one_fit.problem.stride_time_s
+    times = one_fit.trajectory.times
+    guess = human_guess(walker, one_fit.order, times)
+    fractions, step = np.linspace(0.1, 0.9, 5), 1e-5
+    for i, phase in enumerate(one_fit.phases):
+        length = times[phase.end] - times[phase.start]
+        s = (times[phase.start] + length * fractions) / stride
+        here = guess(i, fractions)
+        for leg, shift in ((1, 0.0), (2, 0.5)):
+            thigh, shank, foot = (here.value[f"{n}_{leg}"] for n in ("thigh", "shank", "foot"))
+            angles = {"hip": thigh, "knee": thigh - shank, "ankle": foot - shank - walker.flat}
+            for joint, angle in angles.items():
+                mean = one_fit.problem.angle_corridors()[joint].mean(s + shift)
+                np.testing.assert_allclose(angle, mean, atol=1e-12)
+        assert not np.any(here.value["trunk"])
+        low, high = guess(i, fractions - step), guess(i, fractions + step)
+        for kind, derivative in (("value", "rate"), ("rate", "acceleration")):
+            for name, expected in getattr(here, derivative).items():
+                rise = getattr(high, kind)[name] - getattr(low, kind)[name]
+                slope = rise / (2 * step * length)
+                tolerance = 1e-5 * (1 + np.abs(expected).max())
+                np.testing.assert_allclose(slope, expected, atol=tolerance)
 
 
 def loaded(fit: Fit, i: int) -> tuple[Samples, BodyMotion, Array]:

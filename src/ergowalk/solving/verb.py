@@ -13,7 +13,7 @@ from ergowalk.problem import GaitProblem
 from ergowalk.solution import Solution
 from ergowalk.solution.progress import Report
 from ergowalk.solving.answer import dense_energy, dense_gait, describe, rhythm_of
-from ergowalk.solving.stages import Effort, OrderSearch, StageResult
+from ergowalk.solving.stages import COARSE_POINTS, Effort, OrderSearch, StageResult
 from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.walker import Smoothing
 
@@ -23,11 +23,11 @@ COARSE, FIRST, FINAL, FINER = 0.42, 0.7, 1.1, 1.25
 MESH_TOLERANCE = 0.01
 """E may differ by this share between the reported and the next finer mesh."""
 
-IMPULSIVE_LEVELS = (0.42, 0.7, 1.1)
+IMPULSIVE_LEVELS = (0.42, 0.75, 1.4)
 """Meshes on which a problem without moment-rate bound or cost is shown."""
 
 
-FAINT = Smoothing(moment_rate=1e-8, metatarsal_rate=1e-8)
+FAINT = Smoothing(moment_rate=1e-7, metatarsal_rate=1e-7)
 """Smoothing of a problem without moment-rate bound: too little to hide that it is impulsive."""
 
 
@@ -169,7 +169,7 @@ def _show_impulses(coarse: Candidate) -> Gait:
     history, peaks = [], []
     current, dataset = coarse, None
     for level in IMPULSIVE_LEVELS:
-        result = search.refined(current.result, level, points=coarse.result.points)
+        result = search.refined(current.result, level, COARSE_POINTS)
         if not result.minimum.converged and dataset is not None:
             break
         current = Candidate(search, result)

@@ -23,7 +23,7 @@ COARSE, FIRST, FINAL, FINER = 0.42, 0.7, 1.1, 1.25
 MESH_TOLERANCE = 0.01
 """E may differ by this share between the reported and the next finer mesh."""
 
-IMPULSIVE_LEVELS = (0.42, 0.75, 1.4)
+IMPULSIVE_LEVELS = (0.42, 0.7, 1.1)
 """Meshes on which a problem without moment-rate bound or cost is shown."""
 
 

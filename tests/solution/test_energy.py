@@ -119,6 +119,15 @@ def test_pieces_end_where_time_stands_still() -> None:
     assert [(p.start, p.stop) for p in smooth_pieces(time)] == [(0, 3), (3, 5), (6, 8)]
 
 
+def test_what_is_not_a_number_is_not_counted() -> None:
+    """A motion out of reach has no power; its E is for the record only."""
+    t = np.linspace(0.0, 1.0, 11)
+    power = np.full(11, 4.0)
+    power[[0, 5]] = np.nan, np.inf
+    assert absolute_integral(t, power) == pytest.approx(4.0 * (0.3 + 0.4))
+    assert absolute_integral(t, np.full(11, np.nan)) == 0.0
+
+
 def test_energies_of_joints_count_both_legs() -> None:
     t = np.linspace(0.0, 2.0, 11)
     power = np.zeros((11, 2, 2))

@@ -14,14 +14,18 @@ import pytest
 import xarray as xr
 
 from ergowalk.audit import check_readable
+from ergowalk.body import LegParameters
 from ergowalk.errors import ProblemError
 from ergowalk.gait.rhythm import PRINTED_RHYTHM, Contact, PhaseOrder
+from ergowalk.mechanics.foot import toe_chain
+from ergowalk.mechanics.kinematics import Point, Rotation, Vector
 from ergowalk.problem import GaitProblem, preset
 from ergowalk.solution import Progress, Solution
 from ergowalk.solution.progress import Report
 from ergowalk.solvers.ipopt import Ipopt
 from ergowalk.solving import stages, verb
 from ergowalk.solving.stages import with_times
+from ergowalk.transcription import motion
 from ergowalk.transcription.layout import Mesh
 from ergowalk.transcription.mesh import walking_mesh
 from ergowalk.transcription.walking import Smoothing, walking_problem
@@ -79,6 +83,26 @@ def test_not_converging_is_an_answer(stopped: Run) -> None:
     assert answer.problem == FIXED
     assert answer.energy_per_metre > 0
     assert not answer.audit().accepted
+
+
+def test_a_motion_out_of_reach_is_an_answer_too(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """The trailing foot cannot reach its print: there the angles, and what follows, are missing."""
+
+    def out_of_reach(
+        leg: LegParameters, ankle: Point, toe_tip: Vector
+    ) -> tuple[Rotation, Rotation]:
+        foot, toes = toe_chain(leg, ankle, toe_tip)
+        lost = np.where(np.arange(len(foot.angle)) % 7 == 3, np.nan, 0.0)
+        return Rotation(foot.angle + lost, foot.rate + lost, foot.acceleration + lost), toes
+
+    monkeypatch.setattr(motion, "toe_chain", out_of_reach)
+    answer = hurried(FIXED)
+    assert answer.acceptable is False
+    assert answer.status.startswith("not converged")
+    assert "finite" in {line.key for line in answer.audit().failed}
+    assert Solution.load(answer.save(tmp_path / "gait.nc")).status == answer.status
 
 
 def test_the_loads_are_those_of_the_motion_even_then(stopped: Run) -> None:

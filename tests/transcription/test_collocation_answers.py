@@ -257,6 +257,31 @@ def test_a_cost_on_the_rate_of_a_control_makes_it_straight(m: int) -> None:
         np.testing.assert_allclose(dense(answer.curves, "control", "u", i), line, atol=1e-6)
 
 
+def test_a_reward_for_a_control_against_the_cost_of_its_rate_makes_a_parabola() -> None:
+    """Least integral of c u'^2 - u with u = 0 at both ends: u = t (1 - t) / (4 c), -1 / (48 c)."""
+    c = 0.05
+
+    def inside(instant: Instant) -> Terms:
+        terms = Terms()
+        terms.equal("dynamics", instant.coordinates["x"].acceleration)
+        terms.integrand = -instant.controls["u"]
+        return terms
+
+    problem = chain(
+        phase("arch", inside, controls=[Unknown("u", scale=2.0)]),
+        times={"start": (0.0, 0.0), "end": (1.0, 1.0)},
+        fixed=at_rest("start", 0.0)
+        | {("start", "u", "control"): 0.0, ("end", "u", "control"): 0.0},
+        rate_cost={"u": c},
+    )
+    answer = solved(problem, 3, 3)
+    assert answer.minimum.objective == pytest.approx(-1 / (48 * c), abs=1e-8)
+    t = instants(answer.curves)
+    np.testing.assert_allclose(
+        dense(answer.curves, "control", "u"), t * (1 - t) / (4 * c), atol=1e-7
+    )
+
+
 @pytest.mark.parametrize("m", [2, 3])
 def test_rows_between_instants_hold(m: int) -> None:
     """The costly second phase is as short as its row allows."""

@@ -23,17 +23,25 @@ def absolute_integral(time: Array, power: Array) -> float:
     """Integral of |power| [J] over a record [s, W] with jumps standing twice.
 
     Each smooth piece is interpolated by a cubic spline, which is integrated exactly between its
-    sign changes.
+    sign changes. Where the power is not a number, as in a motion that its search left out of
+    reach, nothing is counted: the audit rejects such a record.
     """
     total = 0.0
     for piece in smooth_pieces(time):
-        t, p = time[piece], power[piece]
-        curve = CubicSpline(t, p, bc_type="not-a-knot")
-        integral = curve.antiderivative()
-        roots = PPoly.roots(curve, extrapolate=False) if np.ptp(p) > 0 else np.array([])
-        cuts = np.concatenate([[t[0]], np.sort(roots[np.isfinite(roots)]), [t[-1]]])
-        total += float(np.sum(np.abs(np.diff(integral(cuts)))))
+        for run in _runs_of_numbers(power[piece]):
+            t, p = time[piece][run], power[piece][run]
+            curve = CubicSpline(t, p, bc_type="not-a-knot")
+            integral = curve.antiderivative()
+            roots = PPoly.roots(curve, extrapolate=False) if np.ptp(p) > 0 else np.array([])
+            cuts = np.concatenate([[t[0]], np.sort(roots[np.isfinite(roots)]), [t[-1]]])
+            total += float(np.sum(np.abs(np.diff(integral(cuts)))))
     return total
+
+
+def _runs_of_numbers(values: Array) -> list[slice]:
+    """Slices of two or more consecutive finite values."""
+    edges = [-1, *np.flatnonzero(~np.isfinite(values)).tolist(), len(values)]
+    return [slice(a + 1, b) for a, b in itertools.pairwise(edges) if b - a > 2]
 
 
 def joint_energies(dataset: xr.Dataset) -> dict[str, float]:

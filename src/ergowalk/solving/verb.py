@@ -17,7 +17,7 @@ from ergowalk.solving.stages import COARSE_POINTS, Effort, OrderSearch, StageRes
 from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.walker import Smoothing
 
-COARSE, FIRST, FINAL, FINER = 0.42, 0.7, 1.1, 1.25
+COARSE, FIRST, FINAL, FINER = 0.42, 0.7, 1.2, 1.35
 """Mesh levels of the search, of the first fine mesh, of the reported gait, and of the check."""
 
 MESH_TOLERANCE = 0.01

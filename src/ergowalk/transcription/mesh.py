@@ -13,13 +13,13 @@ from ergowalk.transcription.layout import Mesh
 
 Array = NDArray[np.float64]
 
-TRANSFER, STANCE, PUSH = 0.0037, 0.0095, 0.0073
+TRANSFER, STANCE, PUSH = 0.0034, 0.0095, 0.0073
 """Element sizes as fractions of T: where the load changes legs, on the flat foot, on the forefoot.
 
 Found by refining one phase at a time: with these the phases share the error of E about evenly.
 """
 
-LAYER, PUSH_OFF = 4, 10
+LAYER, PUSH_OFF = 4, 12
 """Elements over which sizes shrink towards a change of contact, where forces turn sharply, and
 before the other heel lands, where the foot turns fast under full load."""
 

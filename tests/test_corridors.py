@@ -7,7 +7,6 @@ import math
 from pathlib import Path
 from typing import Any
 
-import casadi as ca
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -15,6 +14,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
 
+import ergowalk
 from ergowalk.corridors import (
     ANGLES,
     BUILT_IN,
@@ -77,25 +77,19 @@ def test_first_two_derivatives_are_those_of_the_curve(values: Array, s: float) -
 
 
 @LAW
-@given(samples, st.floats(0, 1))
-def test_value_from_harmonics_is_the_value_of_the_curve(values: Array, s: float) -> None:
+@given(samples, st.floats(0, 1), st.floats(-1, 1))
+def test_coefficients_are_those_of_the_shifted_curve(values: Array, s: float, shift: float) -> None:
     curve = PeriodicCurve.through(values)
-    turns = [2 * math.pi * k * s for k in range(1, MAX_HARMONICS + 1)]
-    harmonics = [(math.cos(turn), math.sin(turn)) for turn in turns]
-    assert curve.of_harmonics(harmonics) == pytest.approx(float(curve(s)), abs=1e-12 * 3000)
+    cosine, sine = np.split(curve.coefficients(shift), 2)
+    turns = 2 * math.pi * np.arange(MAX_HARMONICS + 1) * s
+    value = cosine @ np.cos(turns) + sine @ np.sin(turns)
+    assert value == pytest.approx(float(curve(s + shift)), abs=1e-12 * 3000)
 
 
-def test_value_from_harmonics_takes_casadi_symbols() -> None:
-    curve, s = human_gait("winter-natural").curves["knee_angle"][0], ca.SX.sym("s")
-    turns = [2 * math.pi * k * s for k in range(1, curve.degree + 1)]
-    value = ca.Function("value", [s], [curve.of_harmonics([(ca.cos(t), ca.sin(t)) for t in turns])])
-    assert float(value(0.72)) == pytest.approx(64.86, abs=1e-11)
-
-
-def test_value_from_too_few_harmonics_is_refused() -> None:
+def test_too_few_coefficients_are_refused() -> None:
     curve = PeriodicCurve((1.0, 2.0, 3.0), (0.0, 0.0, 0.0))
-    with pytest.raises(ValueError, match="shorter"):
-        curve.of_harmonics([(1.0, 0.0)])
+    with pytest.raises(ValueError, match="degree = 1: the curve has 2 harmonics; ask for no fewer"):
+        curve.coefficients(degree=1)
 
 
 def test_curve_keeps_the_shape_of_its_argument() -> None:
@@ -120,9 +114,7 @@ def test_packaged_tables_are_reproduced(source: str, signal: str) -> None:
 
 
 def packaged(source: str) -> list[dict[str, str]]:
-    import ergowalk.corridors as module
-
-    path = Path(module.__file__).parent / BUILT_IN[source]
+    path = Path(ergowalk.__file__).parent / BUILT_IN[source]
     lines = [line for line in path.read_text("utf-8").splitlines() if not line.startswith("#")]
     return list(csv.DictReader(lines))
 

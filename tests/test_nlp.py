@@ -218,3 +218,49 @@ def test_violations_are_of_the_rows_at_a_point_if_none_are_given() -> None:
     assert found == WHOLE.violations(x, rows)
     assert found["first"] == pytest.approx(np.abs(rows[[0, 2, 4, 6]]).max())
     assert found["first"] > 0
+
+
+# --- given functions that are expanded instead of differentiated through -------------------------
+
+
+def expanded_kernel() -> Kernel:
+    """v0 exp(v1) with exp as a Taylor polynomial around the present v1, computed beside it."""
+    v, p = ca.SX.sym("v", 2), ca.SX.sym("p", 1)
+    at, value = ca.SX.sym("at"), ca.SX.sym("value")
+    step = v[1] - at
+    exp = value * (1 + step + step**2 / 2)  # e^x is its own derivative
+    rows = ca.vertcat(p[0] * v[0] * exp, v[0] - v[1])
+
+    def expansion(variables: ca.MX, parameters: ca.MX) -> ca.MX:
+        return ca.vertcat(variables[1, :], ca.exp(variables[1, :]))
+
+    return Kernel("expanded", v, ca.vertcat(p, at, value), v[0] ** 2 * exp, rows, expansion)
+
+
+@LAW
+@given(points, weights)
+def test_an_expanded_function_has_its_exact_derivatives(x: Array, own: Array) -> None:
+    block = Block(
+        expanded_kernel(),
+        np.array([[0, 2, 4], [1, 3, 1]]),
+        np.array([[1.0, -2.0, 0.5]]),
+        np.full(2, -INF),
+        np.full(2, INF),
+        ("one", "two"),
+    )
+    oracle = NonlinearProgramme(np.full(SIZE, -3.0), np.full(SIZE, 3.0), [block]).oracle
+    cost: ca.SX = ca.SX(0)
+    rows = []
+    for (i, j), p in zip(block.indices.T.tolist(), block.parameters[0], strict=True):
+        cost = cost + X[i] ** 2 * ca.exp(X[j])
+        rows += [p * X[i] * ca.exp(X[j]), X[i] - X[j]]
+    rows = ca.vertcat(*rows)
+    lagrangian = 0.7 * cost + ca.dot(ca.DM(own[:6]), rows)
+    derivatives = [cost, rows, ca.gradient(cost, X), ca.jacobian(rows, X)]
+    derivatives.append(ca.triu(ca.hessian(lagrangian, X)[0]))
+    expected = [dense(value) for value in ca.Function("own", [X], derivatives)(x)]
+    value, found_rows = oracle.values(x, [])
+    found = [value, found_rows, oracle.gradient(x, [])[1], oracle.jacobian(x, [])[1]]
+    found.append(oracle.hessian(x, [], 0.7, own[:6]))
+    for one, two in zip(found, expected, strict=True):
+        np.testing.assert_allclose(dense(one), two, rtol=1e-11, atol=1e-11)

@@ -8,9 +8,10 @@ variables mean.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -34,6 +35,11 @@ class Kernel:
         Contribution to the objective.
     rows : SX (n_g,)
         Constraint expressions.
+    expansion : function, optional
+        Costly given functions of the variables, at all uses: (n_v, n), (n_p, n) -> (n_e, n).
+        Its results are appended to the parameters, so nothing is differentiated through them: the
+        expressions hold a Taylor polynomial around the present point instead, whose value and
+        first two derivatives are those of the function.
     """
 
     name: str
@@ -41,6 +47,13 @@ class Kernel:
     parameters: ca.SX
     cost: ca.SX
     rows: ca.SX
+    expansion: Callable[[Any, Any], Any] | None = None
+
+    def all_parameters(self, variables: Any, parameters: Any) -> Any:
+        """Parameters of all uses with the results of the expansion, as MX or DM."""
+        if self.expansion is None:
+            return parameters
+        return ca.vertcat(parameters, self.expansion(variables, parameters))
 
     @cached_property
     def values(self) -> ca.Function:
@@ -146,11 +159,16 @@ class NonlinearProgramme:
         """Exact values and derivatives as CasADi functions of (x, p); p is empty."""
         x, p = ca.MX.sym("x", self.size), ca.MX.sym("p", 0)
         local = [_gather(x, b.indices) for b in self.blocks]
-        cost, rows = self._values(local)
-        gradient = self._gradient(local)
-        jacobian = self._jacobian(local)
+        given = [
+            b.kernel.all_parameters(v, b.parameters)
+            for b, v in zip(self.blocks, local, strict=True)
+        ]
+        pairs = list(zip(local, given, strict=True))
+        cost, rows = self._values(pairs)
+        gradient = self._gradient(pairs)
+        jacobian = self._jacobian(pairs)
         weight, multipliers = ca.MX.sym("w"), ca.MX.sym("l", len(self.labels))
-        hessian = self._hessian(local, weight, multipliers)
+        hessian = self._hessian(pairs, weight, multipliers)
         return Oracle(
             ca.Function("nlp", [x, p], [cost, rows], ["x", "p"], ["f", "g"]),
             ca.Function("nlp_grad_f", [x, p], [cost, gradient], ["x", "p"], ["f", "grad_f_x"]),
@@ -174,49 +192,49 @@ class NonlinearProgramme:
             worst[label] = max(worst.get(label, 0.0), float(value))
         return worst
 
-    def _values(self, local: list[ca.MX]) -> tuple[ca.MX, ca.MX]:
+    def _values(self, local: list[tuple[ca.MX, Any]]) -> tuple[ca.MX, ca.MX]:
         cost: ca.MX = ca.MX(0)
         rows = []
-        for block, v in zip(self.blocks, local, strict=True):
-            c, g = _mapped(block.kernel.values, block.uses)(v, block.parameters)
+        for block, (v, p) in zip(self.blocks, local, strict=True):
+            c, g = _mapped(block.kernel.values, block.uses)(v, p)
             cost = cost + ca.sum2(c)
             rows.append(ca.vec(g))
         return cost, ca.vertcat(*rows)
 
-    def _gradient(self, local: list[ca.MX]) -> ca.MX:
+    def _gradient(self, local: list[tuple[ca.MX, Any]]) -> ca.MX:
         pieces = [
-            ca.vec(_mapped(b.kernel.gradient, b.uses)(v, b.parameters))
-            for b, v in zip(self.blocks, local, strict=True)
+            ca.vec(_mapped(b.kernel.gradient, b.uses)(v, p))
+            for b, (v, p) in zip(self.blocks, local, strict=True)
         ]
         where = np.concatenate([b.indices.ravel(order="F") for b in self.blocks])
         return _scatter(where, self.size) @ ca.vertcat(*pieces)
 
-    def _jacobian(self, local: list[ca.MX]) -> ca.MX:
+    def _jacobian(self, local: list[tuple[ca.MX, Any]]) -> ca.MX:
         values, row, column = [], [], []
         first = 0
-        for block, v in zip(self.blocks, local, strict=True):
+        for block, (v, p) in zip(self.blocks, local, strict=True):
             function = block.kernel.jacobian
             pattern = function.sparsity_out(0)
             r, c = (np.array(a, dtype=np.int64) for a in pattern.get_triplet())
             n_g = len(block.labels)
-            entries = _mapped(function, block.uses)(v, block.parameters).nz[:]
+            entries = _mapped(function, block.uses)(v, p).nz[:]
             values.append(ca.vec(entries))  # nonzeros of a single row come as a row
             row.append((r[:, None] + first + n_g * np.arange(block.uses)).ravel(order="F"))
             column.append(block.indices[c].ravel(order="F"))
             first += n_g * block.uses
         return _assemble(values, row, column, (first, self.size))
 
-    def _hessian(self, local: list[ca.MX], weight: ca.MX, multipliers: ca.MX) -> ca.MX:
+    def _hessian(self, local: list[tuple[ca.MX, Any]], weight: ca.MX, multipliers: ca.MX) -> ca.MX:
         values, row, column = [], [], []
         first = 0
-        for block, v in zip(self.blocks, local, strict=True):
+        for block, (v, p) in zip(self.blocks, local, strict=True):
             function = block.kernel.hessian
             pattern = function.sparsity_out(0)
             r, c = (np.array(a, dtype=np.int64) for a in pattern.get_triplet())
             n_g, uses = len(block.labels), block.uses
             own = ca.reshape(multipliers[first : first + n_g * uses], n_g, uses)
             weights = ca.repmat(weight, 1, uses)
-            result = _mapped(function, uses)(v, block.parameters, weights, own)
+            result = _mapped(function, uses)(v, p, weights, own)
             i, j = block.indices[r].ravel(order="F"), block.indices[c].ravel(order="F")
             # two local variables that are one variable: both triangles fall on the diagonal
             twice = (i == j) & np.tile(r != c, uses)

@@ -1,4 +1,4 @@
-"""The command as a process: streams that close, help, and what is imported for what."""
+"""The command as a process: streams that close, help, imports, the same bytes again, no IPOPT."""
 
 from __future__ import annotations
 
@@ -6,10 +6,12 @@ import io
 import os
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+import xarray as xr
 
 import ergowalk
 from ergowalk.cli.streams import ProgressLine, emit
@@ -52,6 +54,76 @@ def test_a_closed_pipe_is_no_error():
     finally:
         os.close(writer)
     assert (answer.returncode, answer.stderr) == (0, "")
+
+
+CUT_SHORT = """
+import sys
+from functools import partial
+from ergowalk.cli import main
+from ergowalk.solving import stages
+stages.Ipopt = partial(stages.Ipopt, max_iterations=30)
+sys.exit(main(sys.argv[1:]))
+"""
+"""The command, with a solver that stops in the middle of its first stage with dynamics."""
+
+
+def raw(variable: xr.DataArray) -> tuple[tuple[int, ...], bytes]:
+    """Shape and bytes of a variable; labels by their text."""
+    values = variable.to_numpy()
+    text = values.dtype == object
+    return values.shape, repr(values.tolist()).encode() if text else values.tobytes()
+
+
+def test_the_same_problem_solved_twice_gives_the_same_bytes(tmp_path):
+    """In processes of their own, whose sets have their members in different orders."""
+    gaits = []
+    for seed in ("1", "2"):
+        arguments = ("solve", "--preset", "berbyuk2002-rhythm", "--no-figures", "--quiet")
+        answer = subprocess.run(
+            [sys.executable, "-c", CUT_SHORT, *arguments, "-o", seed],
+            check=False, capture_output=True, text=True, timeout=120, cwd=tmp_path,
+            env={**ENVIRONMENT, "PYTHONHASHSEED": seed},
+        )  # fmt: skip
+        assert (answer.returncode, answer.stderr) == (1, "")
+        with xr.open_dataset(tmp_path / seed / "gait.nc", decode_cf=False) as stored:
+            gaits.append(stored.load())
+    one, two = gaits
+    assert "ran out of iterations" in one.attrs["solver_status"]
+    assert list(one.variables) == list(two.variables)
+    for name in one.variables:
+        assert raw(one[name]) == raw(two[name]), name
+    clocks = ("build_time", "solve_time")
+    assert set(clocks) <= set(one.attrs)
+    first, second = ({k: v for k, v in d.attrs.items() if k not in clocks} for d in gaits)
+    assert first == second
+    assert (tmp_path / "1/problem.toml").read_bytes() == (tmp_path / "2/problem.toml").read_bytes()
+
+
+@pytest.fixture
+def casadi_without_ipopt(tmp_path):
+    """A folder with CasADi, all but its interface to IPOPT."""
+    package = Path(find_spec("casadi").origin).parent
+    folder = tmp_path / "site"
+    (folder / "casadi").mkdir(parents=True)
+    for path in package.iterdir():
+        if "nlpsol_ipopt" not in path.name:
+            (folder / "casadi" / path.name).symlink_to(path)
+    return folder
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="takes a package apart with symbolic links")
+def test_without_ipopt_there_is_one_line_and_no_gait(casadi_without_ipopt, tmp_path):
+    environment = {**ENVIRONMENT}
+    environment["PYTHONPATH"] = os.pathsep.join(
+        (str(casadi_without_ipopt), ENVIRONMENT["PYTHONPATH"])
+    )
+    arguments = ("--preset", "berbyuk2002-rhythm", "--no-figures", "--quiet", "-o", "out")
+    answer = process("solve", *arguments, cwd=tmp_path, env=environment)
+    assert (answer.returncode, answer.stdout) == (2, "")
+    assert answer.stderr.startswith("ergowalk: solver = 'ipopt': ")
+    assert "; " in answer.stderr  # rule and remedy
+    assert answer.stderr.count("\n") == 1
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a device that is always full")

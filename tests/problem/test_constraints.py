@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-import casadi as ca
 import numpy as np
 import pytest
 from hypothesis import given
@@ -177,34 +176,17 @@ def corridor(joint: str, width: float = 1.5) -> Corridor:
 def test_eq6_edges_are_at_minus_one_and_one(s: float, joint: str, leg_2: bool) -> None:
     band = corridor(joint)
     own = s + 0.5 if leg_2 else s
-    waves = c.harmonics(s, band.mean.degree, half_a_stride_later=leg_2)
-    for angle, place in ((band.lower(own), -1.0), (band.mean(own), 0.0), (band.upper(own), 1.0)):
-        found = c.eq6_corridor_position(float(angle), band, waves)
+    middle, half = float(band.mean(own)), band.width * float(band.sd(own))
+    for angle, place in ((band.lower(own), -1.0), (middle, 0.0), (band.upper(own), 1.0)):
+        found = c.eq6_corridor_position(float(angle), middle, half)
         assert found == pytest.approx(place, abs=1e-9)
 
 
 def test_eq6_is_signed_and_counts_in_half_widths() -> None:
     band = corridor("knee", width=2.0)
-    waves = c.harmonics(0.3, band.mean.degree, half_a_stride_later=False)
     mean, sd = float(band.mean(0.3)), float(band.sd(0.3))
-    assert c.eq6_corridor_position(mean + 3 * sd, band, waves) == pytest.approx(1.5)
-    assert c.eq6_corridor_position(mean - sd, band, waves) == pytest.approx(-0.5)
-
-
-@given(st.floats(-1, 2), st.booleans())
-def test_harmonics_are_cosines_and_sines_of_the_stride(s: float, later: bool) -> None:
-    found = np.array(c.harmonics(s, 25, half_a_stride_later=later))
-    turn = 2 * np.pi * np.arange(1, 26) * (s + (0.5 if later else 0.0))
-    np.testing.assert_allclose(found, np.stack([np.cos(turn), np.sin(turn)], -1), atol=1e-12)
-
-
-def test_harmonics_are_the_same_for_symbols_and_arrays() -> None:
-    s, instants = ca.SX.sym("s"), np.linspace(0, 1, 7)
-    symbols = ca.vertcat(*(part for pair in c.harmonics(s, 5, True) for part in pair))
-    function = ca.Function("harmonics", [s], [symbols])
-    numbers = np.array([part for pair in c.harmonics(instants, 5, True) for part in pair])
-    for k, instant in enumerate(instants):
-        np.testing.assert_allclose(np.asarray(function(instant)).ravel(), numbers[:, k], atol=1e-14)
+    assert c.eq6_corridor_position(mean + 3 * sd, mean, 2 * sd) == pytest.approx(1.5)
+    assert c.eq6_corridor_position(mean - sd, mean, 2 * sd) == pytest.approx(-0.5)
 
 
 # --- (7) ---------------------------------------------------------------------------------------

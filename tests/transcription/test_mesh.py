@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -15,7 +17,7 @@ from ergowalk.gait.rhythm import (
     boundary_fractions,
     half_stride_phases,
 )
-from ergowalk.transcription.mesh import graded, walking_mesh
+from ergowalk.transcription.mesh import cut, finer, graded, walking_mesh
 
 LAW = settings(deadline=None, max_examples=50, derandomize=True, database=None)
 
@@ -118,3 +120,57 @@ def test_few_elements_are_graded_too(n: int) -> None:
 
 def test_equal_grades_are_equal_elements() -> None:
     np.testing.assert_allclose(np.diff(graded(9, 1.0, 1.0)), 1 / 9)
+
+
+# --- cutting elements --------------------------------------------------------------------------
+
+meshes_with_errors = st.lists(
+    st.lists(st.tuples(st.floats(0.05, 1.0), st.floats(0.0, 40.0)), min_size=1, max_size=12),
+    min_size=1,
+    max_size=4,
+)
+
+
+def built(
+    parts: list[list[tuple[float, float]]],
+) -> tuple[tuple[np.ndarray, ...], list[np.ndarray]]:
+    """A mesh from the sizes of its elements, and their errors."""
+    mesh = []
+    for part in parts:
+        edges = np.concatenate([[0.0], np.cumsum([size for size, _ in part])])
+        mesh.append(edges / edges[-1])
+    return tuple(mesh), [np.array([error for _, error in part]) for part in parts]
+
+
+@LAW
+@given(meshes_with_errors)
+def test_elements_are_cut_by_their_error_and_stay_nested(
+    parts: list[list[tuple[float, float]]],
+) -> None:
+    mesh, errors = built(parts)
+    for old, new, error in zip(mesh, cut(mesh, errors), errors, strict=True):
+        assert set(old) <= set(new)
+        pieces = np.diff(np.searchsorted(new, old))
+        np.testing.assert_array_equal(pieces, np.where(error > 6, 3, np.where(error > 1, 2, 1)))
+        sizes = np.split(np.diff(new), np.cumsum(pieces)[:-1])
+        for size, whole in zip(sizes, np.diff(old), strict=True):
+            np.testing.assert_allclose(size, whole / len(size), rtol=1e-9)
+
+
+@LAW
+@given(meshes_with_errors, st.floats(0.05, 1.0))
+def test_the_next_finer_mesh_halves_the_worst_elements(
+    parts: list[list[tuple[float, float]]], share: float
+) -> None:
+    mesh, errors = built(parts)
+    new = finer(mesh, errors, share)
+    pieces = [np.diff(np.searchsorted(b, a)) for a, b in zip(mesh, new, strict=True)]
+    halved, every = np.concatenate(pieces) == 2, np.concatenate(errors)
+    assert set(np.concatenate(pieces)) <= {1, 2}
+    assert halved.sum() == max(1, math.ceil(share * len(every)))
+    assert every[halved].min() >= every[~halved].max(initial=0.0)
+
+
+def test_an_infinite_error_is_cut_too() -> None:
+    (new,) = cut((np.array([0.0, 0.5, 1.0]),), [np.array([np.inf, 0.0])])
+    np.testing.assert_allclose(new, [0, 1 / 6, 1 / 3, 0.5, 1.0])

@@ -20,7 +20,7 @@ from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.mesh import walking_mesh
 from ergowalk.transcription.motion import body_motion, load_sharing
 from ergowalk.transcription.phases import Instant, State
-from ergowalk.transcription.walker import Smoothing, Walker
+from ergowalk.transcription.walker import BAND, Smoothing, Walker
 from ergowalk.transcription.walking import walking_problem
 
 Array = NDArray[np.float64]
@@ -333,10 +333,33 @@ def test_the_fit_stays_near_the_human_means(fit: Fit) -> None:
     places = []
     for i, phase in enumerate(fit.phases):
         _, motion, time = fit.dense(i)
-        instant = Instant(time, {}, {}, {"foot_2": 0.0})
+        edges = fit.walker.corridor_curves.at(time)
+        instant = Instant(time, {}, {}, {"foot_2": 0.0}, curves=edges)
         places += [p for _, p in fit.walker.corridor_places(phase, instant, motion)]
     assert max(float(np.abs(p).max()) for p in places) < 4.0
     assert np.sqrt(np.mean(np.concatenate(places) ** 2)) < 1.2
+
+
+def test_corridor_edges_as_functions_of_time_are_the_corridors(fit: Fit) -> None:
+    """Values and both time derivatives, leg 2 half a stride later."""
+    curves, stride = fit.walker.corridor_curves, fit.problem.stride_time_s
+    time = np.linspace(0, stride, 11)
+    table = np.asarray(curves.evaluate(time[None, :])).reshape(3, len(curves.names), -1)
+    for joint, corridor in fit.walker.corridors.items():
+        for leg in (1, 2):
+            s = time / stride + 0.5 * (leg - 1)
+            middle, half = (curves.names.index(f"{joint}_{leg} {edge}") for edge in BAND)
+            for order in (0, 1, 2):
+                scale = stride**-order
+                np.testing.assert_allclose(
+                    table[order, middle], corridor.mean(s, order) * scale, rtol=1e-9, atol=1e-9
+                )
+                np.testing.assert_allclose(
+                    table[order, half],
+                    corridor.width * corridor.sd(s, order) * scale,
+                    rtol=1e-9,
+                    atol=1e-9,
+                )
 
 
 def test_the_trailing_foot_at_gauss_points_is_the_one_of_the_toe_chain(fit: Fit) -> None:

@@ -87,25 +87,18 @@ def vertical_share(body: Body, motion: BodyMotion, trailing: Vector, pressure: A
     the given ``trailing`` force (x, y) [N], since then the pressure hardly moves. The error shows
     in the centre of pressure, far below a millimetre on a sound mesh.
 
-    The balance (1) is affine in the force, so two evaluations give its zero. Numbers, arrays or
-    CasADi symbols; the force acts at ``pressure`` [m].
+    The moment of all ground forces about the origin does not depend on how the legs share them,
+    so the force is a ratio of lever arms. Numbers, arrays or CasADi symbols; the force acts at
+    ``pressure`` [m].
     """
     c, heel = coefficients(body), leading_print(body.leg(0)).heel
     total = total_reaction(c, motion)
-    leading, toe = (leg_points(body.leg(i), motion.legs[i], motion.hip) for i in (0, 1))
-
-    def miss(force_y: Any) -> Any:
-        two = (trailing[0], force_y)
-        one = (total[0] - trailing[0], total[1] - force_y)
-        toe_ankle = ankle_moment_under(toe, two, pressure)
-        (_, _, ankle), _ = joint_moments_from(c, motion, (one, two), toe_ankle)
-        return pressure_moment(leading, ankle, one) - heel * one[1]
-
-    weight = body.total_mass * body.gravity_m_s2
-    given = miss(trailing[1])
-    correction = -weight * given / (miss(trailing[1] + weight) - given)
-    load = (total[1] - trailing[1]) / weight
-    return trailing[1] + correction / (1 + (load / FIRM) ** 4)
+    leading = leg_points(body.leg(0), motion.legs[0], motion.hip)
+    (_, _, ankle), _ = joint_moments_from(c, motion, (total, (0.0, 0.0)), 0.0)
+    moment = pressure_moment(leading, ankle, total)
+    miss = moment - pressure * trailing[1] - heel * (total[1] - trailing[1])
+    load = (total[1] - trailing[1]) / (body.total_mass * body.gravity_m_s2)
+    return trailing[1] + miss / ((pressure - heel) * (1 + (load / FIRM) ** 4))
 
 
 def _loads(

@@ -11,11 +11,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from ergowalk.body import LegParameters
-from ergowalk.corridors import Corridor
 from ergowalk.gait.footprints import Footprint
 from ergowalk.gait.rhythm import Contact, PhaseOrder
-from ergowalk.mechanics.functions import cos, sin
-from ergowalk.mechanics.kinematics import HALF_PI, LegMotion, LegPoints, Vector
+from ergowalk.mechanics.kinematics import LegMotion, LegPoints, Vector
 
 SHORTEST_PHASE = 0.005
 """Shortest phase that the transcriptions allow, as a fraction of T."""
@@ -84,25 +82,13 @@ def eq5_landing(points: LegPoints, step_length: float) -> tuple[Any, ...]:
     return (points.heel.position[0] - step_length, points.heel.position[1], *points.heel.velocity)
 
 
-def eq6_corridor_position(angle: Any, corridor: Corridor, harmonics: list[tuple[Any, Any]]) -> Any:
+def eq6_corridor_position(angle: Any, middle: Any, half_width: Any) -> Any:
     """(6): place of a joint angle [rad] in its corridor, -1 at the lower and 1 at the upper edge.
 
-    ``harmonics`` are cos and sin of 2 pi k t/T for k = 1, 2, ... from :func:`harmonics`.
+    ``middle`` is the human mean and ``half_width`` the width of the corridor times the standard
+    deviation [rad], both at the same instant.
     """
-    mean, sd = corridor.mean.of_harmonics(harmonics), corridor.sd.of_harmonics(harmonics)
-    return (angle - mean) / (corridor.width * sd)
-
-
-def harmonics(fraction: Any, count: int, half_a_stride_later: bool) -> list[tuple[Any, Any]]:
-    """cos and sin of 2 pi k s for k = 1 ... count by recurrence; leg 2 is half a stride later."""
-    c1, s1 = cos(4 * HALF_PI * fraction), sin(4 * HALF_PI * fraction)
-    pairs: list[tuple[Any, Any]] = []
-    c, s = c1, s1
-    for k in range(1, count + 1):
-        sign = -1.0 if half_a_stride_later and k % 2 else 1.0
-        pairs.append((sign * c, sign * s))
-        c, s = c * c1 - s * s1, s * c1 + c * s1
-    return pairs
+    return (angle - middle) / half_width
 
 
 def eq7_toe_rotation(contact: Contact, leg: LegParameters, motion: LegMotion) -> Any:

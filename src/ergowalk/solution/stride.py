@@ -22,9 +22,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Piece:
-    """A smooth piece of the half stride: instants [s], contacts, motion, sharing of the load.
+    """One phase of the half stride: instants [s], contacts, motion, sharing of the load.
 
-    Arrays (n,), both ends included.
+    Arrays (n,), both ends included; where an acceleration or a moment may jump the instant stands
+    twice.
     """
 
     time: Array

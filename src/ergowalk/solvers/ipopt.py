@@ -15,6 +15,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from ergowalk.errors import ProblemError
 from ergowalk.nlp import NonlinearProgramme
 
 Array = NDArray[np.float64]
@@ -50,11 +51,20 @@ class Ipopt:
 
         Raises
         ------
+        ProblemError
+            If CasADi was built without IPOPT.
         KeyboardInterrupt
             If the user interrupts: the iteration is finished first.
         Exception
             Whatever ``monitor`` raises, after it has stopped the solver.
         """
+        if not ca.has_nlpsol("ipopt"):  # asks quietly; nlpsol would print where it has looked
+            raise ProblemError(
+                "CasADi cannot load it",
+                "reinstall casadi from a wheel that has IPOPT",
+                field="solver",
+                value="ipopt",
+            )
         oracle = programme.oracle
         lower, upper = programme.row_bounds
         watch = _Watch(programme.size, len(lower), lower, upper, monitor)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -14,7 +13,7 @@ from ergowalk.problem import GaitProblem
 from ergowalk.problem.files import problem_to_toml
 from ergowalk.solution.energy import joint_energies
 from ergowalk.solution.stride import Piece, stride_dataset
-from ergowalk.transcription.curves import Trajectory
+from ergowalk.transcription.curves import Trajectory, joined
 from ergowalk.transcription.motion import body_motion, load_sharing
 from ergowalk.transcription.walker import Walker
 
@@ -25,30 +24,24 @@ SAMPLES = 9
 def dense_gait(walker: Walker, order: PhaseOrder, trajectory: Trajectory) -> xr.Dataset:
     """The curves on a dense grid: between the nodes, where a transcription cannot hide."""
     longest = walker.problem.stride_time_s / 400
-    pieces = []
-    for phase, curves in zip(half_stride_phases(order), trajectory.phases, strict=True):
-        for k in range(curves.elements):
-            width = curves.duration * (curves.fractions[k + 1] - curves.fractions[k])
+    pieces, last = [], 0.0
+    phases = half_stride_phases(order)
+    for phase, curves in zip(phases, trajectory.phases, strict=True):
+        edges = curves.start + curves.duration * curves.fractions
+        edges[0] = last  # where the phase before has ended, to the last digit
+        if phase is phases[-1]:
+            edges[-1] = walker.problem.stride_time_s / 2
+        last = float(edges[-1])
+        time, samples = [], []
+        for k, width in enumerate(np.diff(edges)):
             count = max(SAMPLES, int(np.ceil(width / longest)) + 1)
-            s = np.linspace(0.0, 1.0, count)
-            samples = curves.in_element(k, s)
-            motion = body_motion(walker, phase, samples)
-            time = curves.start + curves.duration * curves.fractions[k] + width * s
-            sharing = load_sharing(walker, phase, samples, motion)
-            pieces.append(Piece(time, phase.legs, motion, sharing))
-    return stride_dataset(walker.problem, _meeting(pieces, walker.problem.stride_time_s / 2))
-
-
-def _meeting(pieces: Sequence[Piece], half: float) -> list[Piece]:
-    """Neighbouring pieces end and begin at the very same number, the last at T/2."""
-    out, last = [], 0.0
-    for i, piece in enumerate(pieces):
-        time = piece.time.copy()
-        time[0] = last
-        last = half if i == len(pieces) - 1 else float(time[-1])
-        time[-1] = last
-        out.append(Piece(time, piece.contacts, piece.motion, piece.sharing))
-    return out
+            time.append(np.linspace(edges[k], edges[k + 1], count))
+            samples.append(curves.in_element(k, np.linspace(0.0, 1.0, count)))
+        dense = joined(samples)
+        motion = body_motion(walker, phase, dense)
+        sharing = load_sharing(walker, phase, dense, motion)
+        pieces.append(Piece(np.concatenate(time), phase.legs, motion, sharing))
+    return stride_dataset(walker.problem, pieces)
 
 
 def dense_energy(dataset: xr.Dataset, step_length: float) -> float:

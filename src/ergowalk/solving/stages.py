@@ -6,8 +6,6 @@ import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-
 from ergowalk.gait.rhythm import PhaseOrder
 from ergowalk.problem import GaitProblem
 from ergowalk.problem.objective import energy_per_metre
@@ -22,13 +20,18 @@ from ergowalk.transcription.guess import (
     starting_times,
 )
 from ergowalk.transcription.kernel import KernelStore
+from ergowalk.transcription.layout import Mesh
 from ergowalk.transcription.mesh import walking_mesh
 from ergowalk.transcription.phases import PhasedProblem
+from ergowalk.transcription.residuals import Residuals, mesh_residuals
 from ergowalk.transcription.walker import Smoothing, Walker
 from ergowalk.transcription.walking import kinematic_problem, walking_problem
 
 COARSE_POINTS, FINE_POINTS = 2, 3
 """Gauss points per element while searching, and for the reported gait."""
+
+LARGE_ERROR = 5.0
+"""Error of a mesh from which the solver starts further from the bounds."""
 
 
 @dataclass
@@ -67,6 +70,19 @@ class StageResult:
         return self.collocation.scheme.m
 
 
+@dataclass(frozen=True)
+class Start:
+    """Where a stage begins: curves, and boundary instants [s]."""
+
+    guess: Guess
+    times: Mapping[str, float]
+
+    @classmethod
+    def at(cls, curves: Trajectory) -> Start:
+        """At the end of another stage."""
+        return cls(curves.as_guess(), curves.times)
+
+
 class OrderSearch:
     """All stages for one phase order of one problem."""
 
@@ -90,62 +106,63 @@ class OrderSearch:
         """The motion nearest to the human means that stands on the ground, rhythm as printed."""
         times = starting_times(self.problem, starting_rhythm(self.problem, self.order))
         phased = with_times(kinematic_problem(self.problem, self.order), times)
-        guess = human_guess(self.walker, self.order, times)
-        return self._run("fit to human means", phased, 0.4, 2, guess, times, Ipopt()).trajectory
+        start = Start(human_guess(self.walker, self.order, times), times)
+        return self._run("fit to human means", phased, self._mesh(times, 0.4), 2, start).trajectory
 
     def fixed_rhythm(self, fit: Trajectory, level: float) -> StageResult:
         """First dynamics: from the fit, rhythm held."""
-        guess = loaded_guess(self.walker, self.order, fit)
-        phased = with_times(self.phased, fit.times)
-        free = not self.problem.rhythm.fixed
-        solver = Ipopt(tolerance=1e-4 if free else 1e-6)
-        return self._run("rhythm held", phased, level, COARSE_POINTS, guess, fit.times, solver)
+        start = Start(loaded_guess(self.walker, self.order, fit), fit.times)
+        phased, mesh = with_times(self.phased, fit.times), self._mesh(fit.times, level)
+        solver = Ipopt(tolerance=1e-4)
+        return self._run("rhythm held", phased, mesh, COARSE_POINTS, start, solver)
 
-    def free_rhythm(self, start: StageResult, level: float) -> StageResult:
-        """All switching times free."""
-        curves = start.trajectory
-        solver = Ipopt(tolerance=1e-5)
-        return self._run(
-            "rhythm free",
-            self.phased,
-            level,
-            FINE_POINTS,
-            curves.as_guess(),
-            curves.times,
-            solver,
-        )
+    def free_rhythm(self, held: StageResult) -> StageResult:
+        """All switching times as free as the problem lets them be, parabolic moments."""
+        start, solver = Start.at(held.trajectory), Ipopt(tolerance=1e-5)
+        mesh = held.collocation.mesh
+        stage = "parabolic moments" if self.problem.rhythm.fixed else "rhythm free"
+        return self._run(stage, self.phased, mesh, FINE_POINTS, start, solver)
 
-    def refined(self, start: StageResult, level: float, points: int = FINE_POINTS) -> StageResult:
-        """The same gait on another mesh.
+    def refined(self, start: StageResult, mesh: Mesh, error: float) -> StageResult:
+        """The same gait on a mesh in which elements have been cut.
 
-        With as many Gauss points as before the multipliers come along, and the solver starts
-        where it stopped.
+        The multipliers come along and the solver starts where it stopped, the nearer to the
+        bounds the smaller the ``error`` of the mesh before was (as a multiple of what is allowed).
         """
-        curves, before = start.trajectory, None
-        solver = Ipopt(tolerance=1e-6, strategy="monotone", barrier_start=1e-3, push=1e-4)
-        if start.points == points:
-            before, solver = start, replace(solver, barrier_start=1e-5)
-        stage = f"mesh level {level:g}"
+        barrier = 1e-5 if error > LARGE_ERROR else 1e-6
+        solver = Ipopt(tolerance=1e-6, strategy="monotone", barrier_start=barrier, push=1e-4)
         return self._run(
-            stage, self.phased, level, points, curves.as_guess(), curves.times, solver, before
+            "finer mesh", self.phased, mesh, start.points, Start.at(start.trajectory), solver, start
         )
+
+    def remeshed(self, start: StageResult, level: float, points: int) -> StageResult:
+        """The same gait on the graded mesh of a level."""
+        solver = Ipopt(tolerance=1e-6, strategy="monotone", barrier_start=1e-3, push=1e-4)
+        curves = start.trajectory
+        mesh, stage = self._mesh(curves.times, level), f"mesh level {level:g}"
+        return self._run(stage, self.phased, mesh, points, Start.at(curves), solver)
+
+    def residuals(self, result: StageResult) -> Residuals:
+        """What the mesh leaves undone between its nodes."""
+        return mesh_residuals(self.walker, self.order, result.trajectory)
+
+    def _mesh(self, times: Mapping[str, float], level: float) -> Mesh:
+        return walking_mesh(self.order, times, self.problem.stride_time_s, level)
 
     def _run(
         self,
         stage: str,
         phased: PhasedProblem,
-        level: float,
+        mesh: Mesh,
         points: int,
-        guess: Guess,
-        times: Mapping[str, float],
-        solver: Ipopt,
+        start: Start,
+        solver: Ipopt | None = None,
         before: StageResult | None = None,
     ) -> StageResult:
         began = time.process_time()
-        mesh = walking_mesh(self.order, times, self.problem.stride_time_s, level)
         collocation = Collocation(phased, mesh, points, self.store)
         programme = collocation.programme
-        start = collocation.pack(guess, times)
+        x = collocation.pack(start.guess, start.times)
         _ = programme.oracle
         self.effort.build_time += time.process_time() - began
         multipliers = None
@@ -155,7 +172,7 @@ class OrderSearch:
                 before.collocation, last.variable_multipliers, last.row_multipliers
             )
         monitor = self._monitor(stage, collocation.elements)
-        minimum = solver.minimise(programme, start, monitor, multipliers)
+        minimum = (solver or Ipopt()).minimise(programme, x, monitor, multipliers)
         self.effort.add(minimum)
         return StageResult(
             collocation, collocation.unpack(minimum.x), minimum, self._energy(minimum.objective)
@@ -180,8 +197,3 @@ class OrderSearch:
 def with_times(phased: PhasedProblem, times: Mapping[str, float]) -> PhasedProblem:
     """The same problem with all boundary instants fixed."""
     return replace(phased, times={name: (float(t), float(t)) for name, t in times.items()})
-
-
-def finite(trajectory: Trajectory) -> bool:
-    """Whether all curves are numbers."""
-    return all(bool(np.all(np.isfinite(p.values))) for p in trajectory.phases)

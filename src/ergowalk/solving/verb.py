@@ -10,15 +10,20 @@ import xarray as xr
 from ergowalk.audit import audit
 from ergowalk.errors import ProblemError
 from ergowalk.problem import GaitProblem
+from ergowalk.problem.objective import energy_per_metre
 from ergowalk.solution import Solution
 from ergowalk.solution.progress import Report
 from ergowalk.solving.answer import dense_energy, dense_gait, describe, rhythm_of
 from ergowalk.solving.stages import COARSE_POINTS, Effort, OrderSearch, StageResult
 from ergowalk.transcription.kernel import KernelStore
+from ergowalk.transcription.mesh import cut, finer
 from ergowalk.transcription.walker import Smoothing
 
-COARSE, FIRST, FINAL, FINER = 0.42, 0.7, 1.2, 1.35
-"""Mesh levels of the search, of the first fine mesh, of the reported gait, and of the check."""
+COARSE = 0.42
+"""Mesh level of the search."""
+
+ROUNDS, MOST_ELEMENTS = 6, 250
+"""How often elements are cut whose errors are too large, and how many there may be."""
 
 MESH_TOLERANCE = 0.01
 """E may differ by this share between the reported and the next finer mesh."""
@@ -104,58 +109,69 @@ class Gait:
     settled: bool
 
 
-def _coarse(search: OrderSearch, level: float = COARSE) -> Candidate:
-    held = search.fixed_rhythm(search.fit(), level)
-    if search.problem.rhythm.fixed or not held.minimum.converged:
+def _coarse(search: OrderSearch) -> Candidate:
+    held = search.fixed_rhythm(search.fit(), COARSE)
+    if not held.minimum.converged:
         return Candidate(search, held)
-    return Candidate(search, search.free_rhythm(held, level))
+    return Candidate(search, search.free_rhythm(held))
 
 
-def _record(candidate: Candidate, **flags: bool) -> tuple[xr.Dataset, dict[str, Any]]:
-    """Dense curves of a stage, and one line of the mesh history."""
-    search, result = candidate.search, candidate.result
-    dataset = dense_gait(search.walker, search.order, result.trajectory)
-    record: dict[str, Any] = {
+def _record(result: StageResult, energy: float, **flags: bool) -> dict[str, Any]:
+    """One line of the mesh history."""
+    return {
         "elements": result.elements,
         "points": result.points,
-        "energy_per_metre": dense_energy(dataset, search.problem.step_length_m),
+        "energy_per_metre": energy,
         "iterations": result.minimum.iterations,
         "converged": result.minimum.converged,
         **flags,
     }
-    return dataset, record
+
+
+def _dense(
+    candidate: Candidate, history: list[dict[str, Any]], **flags: bool
+) -> tuple[xr.Dataset, float]:
+    """Dense curves of a stage and their E [J/m], with a line more in the history."""
+    search, result = candidate.search, candidate.result
+    dataset = dense_gait(search.walker, search.order, result.trajectory)
+    energy = dense_energy(dataset, search.problem.step_length_m)
+    history.append(_record(result, energy, **flags))
+    return dataset, energy
 
 
 def _refine(coarse: Candidate) -> Gait:
     """The reported gait and the check of its mesh."""
-    search = coarse.search
-    _, first = _record(coarse)
+    search, final = coarse.search, coarse
+    history: list[dict[str, Any]] = []
     if not coarse.result.minimum.converged:
-        return _failed(coarse, [], "on the coarse mesh")
-    history = [first]
-    final = coarse
-    for level in (FIRST, FINAL):
-        final = Candidate(search, search.refined(final.result, level))
+        return _failed(coarse, history, "on the coarse mesh")
+    residuals = search.residuals(coarse.result)
+    for _ in range(ROUNDS):
+        if residuals.largest <= 1.0 or final.result.elements > MOST_ELEMENTS:
+            break
+        energy = energy_per_metre(residuals.work, search.problem.step_length_m)
+        history.append(_record(final.result, energy))
+        mesh = cut(final.result.collocation.mesh, residuals.errors)
+        final = Candidate(search, search.refined(final.result, mesh, residuals.largest))
         if not final.result.minimum.converged:
             return _failed(final, history, f"on {final.result.elements} elements")
-        if level != FINAL:
-            history.append(_record(final)[1])
-    dataset, reported = _record(final, final=True)
-    check = Candidate(search, search.refined(final.result, FINER))
-    _, finer = _record(check, finer=True)
-    history += [reported, finer]
+        residuals = search.residuals(final.result)
+    dataset, reported = _dense(final, history, final=True)
+    mesh = finer(final.result.collocation.mesh, residuals.errors)
+    check = Candidate(search, search.refined(final.result, mesh, 1.0))
+    _, confirmed = _dense(check, history, finer=True)
     if not check.result.minimum.converged:
         status = (
-            f"converged on {reported['elements']} elements, but the check on "
-            f"{finer['elements']} did not: {check.result.minimum.message}"
+            f"converged on {final.result.elements} elements, but the check on "
+            f"{check.result.elements} did not: {check.result.minimum.message}"
         )
         return Gait(final, dataset, history, status, settled=False)
-    change = finer["energy_per_metre"] / reported["energy_per_metre"] - 1
+    change = confirmed / reported - 1
     settled = abs(change) <= MESH_TOLERANCE
     status = (
         f"{'converged' if settled else 'not converged with the mesh'}: "
-        f"E = {reported['energy_per_metre']:.2f} J/m on {reported['elements']} elements, "
-        f"{100 * change:+.2f} % on {finer['elements']}"
+        f"E = {reported:.2f} J/m on {final.result.elements} elements, "
+        f"{100 * change:+.2f} % on {check.result.elements}"
     )
     return Gait(final, dataset, history, status, settled)
 
@@ -166,17 +182,17 @@ def _show_impulses(coarse: Candidate) -> Gait:
     There is no optimum to converge to: each finer mesh allows sharper peaks and a lower E.
     """
     search = coarse.search
-    history, peaks = [], []
+    history: list[dict[str, Any]] = []
     current, dataset = coarse, None
     for level in IMPULSIVE_LEVELS:
-        result = search.refined(current.result, level, COARSE_POINTS)
-        if not result.minimum.converged and dataset is not None:
+        result = search.remeshed(current.result, level, COARSE_POINTS)
+        if not result.minimum.converged:
+            if dataset is None:
+                return _failed(Candidate(search, result), [], f"on {result.elements} elements")
             break
         current = Candidate(search, result)
-        dataset, record = _record(current)
-        record |= _sharpness(dataset, search)
-        history.append(record)
-        peaks.append(record["peak_moment_rate"])
+        dataset, _ = _dense(current, history)
+        history[-1] |= _sharpness(dataset, search)
     assert dataset is not None
     history[-1]["final"] = True
 
@@ -209,9 +225,9 @@ def _sharpness(dataset: xr.Dataset, search: OrderSearch) -> dict[str, float]:
 
 
 def _failed(candidate: Candidate, history: list[dict[str, Any]], where: str) -> Gait:
-    dataset, record = _record(candidate, final=True)
+    dataset, _ = _dense(candidate, history, final=True)
     status = f"not converged {where}: {candidate.result.minimum.message}"
-    return Gait(candidate, dataset, [*history, record], status, settled=False)
+    return Gait(candidate, dataset, history, status, settled=False)
 
 
 def _finished(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -74,14 +74,7 @@ class PhaseCurves:
         """Curves at fractions of the phase."""
         k = np.clip(np.searchsorted(self.fractions, fraction, "right") - 1, 0, self.elements - 1)
         s = (fraction - self.fractions[k]) / np.diff(self.fractions)[k]
-        parts = [self.in_element(int(e), np.array([u])) for e, u in zip(k, s, strict=True)]
-
-        def join(kind: str) -> dict[str, Array]:
-            first = getattr(parts[0], kind)
-            return {n: np.concatenate([getattr(p, kind)[n] for p in parts]) for n in first}
-
-        kinds = ("value", "rate", "acceleration", "control", "algebraic")
-        return Samples(*(join(kind) for kind in kinds))
+        return joined([self.in_element(int(e), np.array([u])) for e, u in zip(k, s, strict=True)])
 
 
 @dataclass(frozen=True)
@@ -94,6 +87,16 @@ class Trajectory:
     def as_guess(self) -> Guess:
         """These curves as a guess on another mesh of the same phases."""
         return lambda i, fractions: self.phases[i].at(fractions)
+
+
+def joined(parts: Sequence[Samples]) -> Samples:
+    """Curves of several stretches one after the other."""
+
+    def join(kind: str) -> dict[str, Array]:
+        names = getattr(parts[0], kind)
+        return {n: np.concatenate([getattr(p, kind)[n] for p in parts]) for n in names}
+
+    return Samples(*(join(k) for k in ("value", "rate", "acceleration", "control", "algebraic")))
 
 
 def _columns(names: list[str], values: Array) -> dict[str, Array]:

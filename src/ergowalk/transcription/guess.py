@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,22 +24,61 @@ SHORTEST_START = 0.015
 
 
 def starting_rhythm(problem: GaitProblem, order: PhaseOrder) -> Rhythm:
-    """The printed rhythm inside the bounds, in the asked order, with room for every phase."""
+    """The printed rhythm inside the bounds, in the asked order, with room for every phase.
+
+    Every phase lasts at least :data:`SHORTEST_START`, or as long as the bounds allow.
+    """
     start, bounds = problem.rhythm.start(), problem.rhythm.bounds
     toe_low, toe_high = bounds("toe_off")
-    ranges = {"heel_end": bounds("heel_end"), "toe_off": (toe_low - 0.5, toe_high - 0.5)}
-    names = ["toe_off", "heel_end"]
-    if order is PhaseOrder.FLAT_FIRST:
-        names.reverse()
-    wanted = sorted((start.heel_end, start.other_toe_off))
-    (low_1, high_1), (low_2, high_2) = (ranges[name] for name in names)
-    first = min(max(wanted[0], low_1), high_1)
-    second = min(max(wanted[1], low_2, first + SHORTEST_START), high_2)
-    first = max(min(first, second - SHORTEST_START), low_1)
-    heel_off_low, heel_off_high = bounds("heel_off")
-    heel_off = min(max(start.heel_off, heel_off_low, second + SHORTEST_START), heel_off_high)
-    instants = dict(zip(names, (first, second), strict=True))
-    return Rhythm(instants["heel_end"], heel_off, instants["toe_off"] + 0.5)
+    ranges = {
+        "heel_end": bounds("heel_end"),
+        "other_toe_off": (toe_low - 0.5, toe_high - 0.5),
+        "heel_off": bounds("heel_off"),
+    }
+    inner = [phase.end for phase in half_stride_phases(order)[:-1]]
+    early = sorted((start.heel_end, start.other_toe_off))  # the asked order may exchange them
+    lower, upper = zip((0.0, 0.0), *(ranges[name] for name in inner), (0.5, 0.5), strict=True)
+    found = _with_room((0.0, *early, start.heel_off, 0.5), lower, upper)
+    instants = dict(zip(inner, found[1:-1], strict=True))
+    return Rhythm(instants["heel_end"], instants["heel_off"], instants["other_toe_off"] + 0.5)
+
+
+def _with_room(
+    wanted: Sequence[float], lower: Sequence[float], upper: Sequence[float]
+) -> list[float]:
+    """Instants in order between their bounds, moved only where that gives a phase its room."""
+    rooms = _rooms(lower, upper)
+    latest = list(upper)
+    for k in reversed(range(len(rooms))):
+        latest[k] = min(latest[k], latest[k + 1] - rooms[k])
+    found = [lower[0]]
+    for k, room in enumerate(rooms, start=1):
+        later = max(wanted[k], found[-1] + room)
+        found.append(max(lower[k], min(later, latest[k])))
+    return found
+
+
+def _rooms(lower: Sequence[float], upper: Sequence[float]) -> list[float]:
+    """Shortest duration of each phase: :data:`SHORTEST_START`, less where the bounds are tighter.
+
+    The phases between two instants share at most the upper bound of the later less the lower
+    bound of the earlier. The tightest pair of instants gives its phases equal parts of that; the
+    others share what is left to them, until all have their room.
+    """
+    count = len(lower) - 1
+    rooms: dict[int, float] = {}
+    while len(rooms) < count:
+        parts = []
+        for first, last in combinations(range(count + 1), 2):
+            waiting = [k for k in range(first, last) if k not in rooms]
+            if waiting:
+                given = sum(rooms.get(k, 0.0) for k in range(first, last))
+                parts.append(((upper[last] - lower[first] - given) / len(waiting), waiting))
+        part, waiting = min(parts)
+        if part >= SHORTEST_START:
+            waiting = [k for k in range(count) if k not in rooms]
+        rooms |= dict.fromkeys(waiting, min(max(part, 0.0), SHORTEST_START))
+    return [rooms[k] for k in range(count)]
 
 
 def starting_times(problem: GaitProblem, rhythm: Rhythm) -> dict[str, float]:

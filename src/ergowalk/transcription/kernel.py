@@ -77,24 +77,31 @@ def phase_kernel(
     slacks: list[Any] = []
     scale = phase.absolute_scale
     for j, (c, w) in enumerate(zip(scheme.points, scheme.weights, strict=True)):
-        arguments = local.arguments(float(c))
-        powers, integrand = inside.add(rows, arguments)
+        powers, integrand = inside.add(rows, local, float(c))
         if phase.path_everywhere or j == scheme.m // 2:
-            path.add(rows, arguments)
+            path.add(rows, local, float(c))
         n_abs = powers.numel()
         plus, minus = ca.SX.sym(f"plus_{j}", n_abs), ca.SX.sym(f"minus_{j}", n_abs)
         rows.add(plus - minus - powers / scale, ["power slacks"] * n_abs, 0.0, 0.0)
         cost = cost + w * local.h * (scale * ca.sum1(plus + minus) + integrand)
         absolutes.append(powers / scale)
         slacks += [plus, minus]
-    path_at_mesh.add(rows, local.arguments(0.0))
+    path_at_mesh.add(rows, local, 0.0)
     for place in (0.0, *BETWEEN, 1.0):
-        at_ends.add(rows, local.arguments(place))
+        at_ends.add(rows, local, place)
     cost = cost + _control_rates(local, problem, rows)
     _control_bounds(local, rows)
     variables = ca.vertcat(local.variables, *slacks)
     name = phase.name.replace("+", "_")
-    kernel = Kernel(name, variables, local.parameters, cost, ca.vertcat(*rows.expressions))
+    given = local.given
+    kernel = Kernel(
+        name,
+        variables,
+        ca.vertcat(local.parameters, *(entry.symbols for entry in given.values())),
+        cost,
+        ca.vertcat(*rows.expressions),
+        _expansion(phase, variables, local, tuple(given)) if given else None,
+    )
     absolute = ca.Function("absolute", [variables, local.parameters], [ca.vertcat(*absolutes)])
     lower, upper = np.concatenate(rows.lower), np.concatenate(rows.upper)
     n_abs = absolute.numel_out(0) // scheme.m
@@ -138,6 +145,8 @@ class CompiledFunction:
         sizes = (1, *[len(names)] * 3, *[len(controls)] * 2, len(algebraics))
         symbols = [ca.SX.sym(f"s{i}", n) for i, n in enumerate(sizes)]
         t, value, rate, acceleration, control, slope, z = symbols
+        curve_names = () if phase.curves is None else phase.curves.names
+        curves = ca.SX.sym("curves", len(curve_names))
         terms = function(
             Instant(
                 t,
@@ -145,6 +154,7 @@ class CompiledFunction:
                 {n: control[i] for i, n in enumerate(controls)},
                 {} if kind == "mesh" else {n: z[i] for i, n in enumerate(algebraics)},
                 {n: slope[i] for i, n in enumerate(controls)},
+                {n: curves[i] for i, n in enumerate(curve_names)},
             )
         )
         self.labels = [row[0] for row in terms.rows]
@@ -155,14 +165,51 @@ class CompiledFunction:
             ca.vertcat(*(ca.SX(e) for e in terms.absolute)),
             ca.SX(terms.integrand),
         ]
-        self.function = ca.Function(kind, symbols, outputs)
+        self.function = ca.Function(kind, [*symbols, curves], outputs)
+        self.sees_curves = bool(curve_names) and ca.depends_on(ca.vertcat(*outputs), curves)
 
-    def add(self, rows: _Rows, arguments: list[Any]) -> tuple[Any, Any]:
-        """Add the rows at an instant; returns absolute-value arguments and integrand."""
-        values, absolute, integrand = self.function(*arguments)
+    def add(self, rows: _Rows, local: _Local, s: float) -> tuple[Any, Any]:
+        """Add the rows at local fraction s; returns absolute-value arguments and integrand."""
+        curves = local.curves(s) if self.sees_curves else 0.0
+        values, absolute, integrand = self.function(*local.arguments(s), curves)
         if self.labels:
             rows.add(values, self.labels, self.lower, self.upper)
         return absolute, integrand
+
+
+@dataclass(frozen=True)
+class _Given:
+    """Given functions of time at one place of an element: instant, values, both derivatives."""
+
+    symbols: Any
+    count: int
+
+    def at(self, time: Any) -> Any:
+        """Their Taylor polynomials, exact to second order at the present point."""
+        step = time - self.symbols[0]
+        value, first, second = ca.vertsplit(self.symbols[1:], self.count)
+        return value + first * step + second * step**2 / 2
+
+
+def _expansion(
+    phase: PhaseModel, variables: Any, local: _Local, places: tuple[float, ...]
+) -> Callable[[Any, Any], Any]:
+    """The given functions of time at some places of every element: instant, values, derivatives."""
+    instants = ca.Function(
+        "instants",
+        [variables, local.parameters],
+        [ca.vertcat(*(local.time(s) for s in places))],
+    )
+    assert phase.curves is not None
+    evaluate, rows = phase.curves.evaluate, 3 * len(phase.curves.names)
+
+    def expansion(v: Any, p: Any) -> Any:
+        uses = v.shape[1]
+        times = instants.map(uses)(v, p)
+        flat = ca.reshape(times, 1, len(places) * uses)
+        return ca.reshape(ca.vertcat(flat, evaluate(flat)), (1 + rows) * len(places), uses)
+
+    return expansion
 
 
 class _Local:
@@ -191,6 +238,19 @@ class _Local:
         self.variables = ca.vertcat(self.t0, self.t1, *raw_left, *raw_right, raw_bulge, *inner)
         self.duration = self.t1 - self.t0
         self.h = self.duration * self.parameters[1]
+        self.given: dict[float, _Given] = {}
+
+    def time(self, s: float) -> Any:
+        """Instant [s] of local fraction s."""
+        return self.t0 + self.duration * (self.parameters[0] + self.parameters[1] * s)
+
+    def curves(self, s: float) -> Any:
+        """The given functions of time at local fraction s."""
+        assert self.phase.curves is not None
+        if s not in self.given:
+            count = len(self.phase.curves.names)
+            self.given[s] = _Given(ca.SX.sym(f"given_{len(self.given)}", 1 + 3 * count), count)
+        return self.given[s].at(self.time(s))
 
     def arguments(self, s: float) -> list[Any]:
         """Time, values, rates, accelerations, controls, slopes, algebraics at local fraction s."""
@@ -199,7 +259,7 @@ class _Local:
         weight = ca.DM(scheme.value(s)[0])
         slopes = [self.slope(i, s) for i in range(len(self.phase.controls))]
         return [
-            self.t0 + self.duration * (self.parameters[0] + self.parameters[1] * s),
+            self.time(s),
             self.left[0] + self.h * s * self.left[1] + self.h**2 * (self.a @ ca.DM(second)),
             self.left[1] + self.h * (self.a @ ca.DM(first)),
             self.a @ weight,

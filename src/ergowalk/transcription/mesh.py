@@ -1,9 +1,9 @@
-"""Meshes: how many elements each phase gets, and how they are graded."""
+"""Meshes: how many elements each phase gets at first, and which of them are cut later."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,3 +66,46 @@ def graded(n: int, first: float, last: float, last_layer: int = LAYER) -> Array:
     edges = np.concatenate([[0.0], np.cumsum(sizes)])
     mesh: Array = edges / edges[-1]
     return mesh
+
+
+THRICE = 6.0
+"""Error, as a multiple of what is allowed, from which an element is cut in three."""
+
+
+def cut(mesh: Mesh, errors: Sequence[Array]) -> Mesh:
+    """The mesh with every element cut in two whose error is above 1, in three above 6.
+
+    The elements stay nested: on the new mesh the old curves are the same curves, and the solver
+    starts next to the solution.
+
+    Parameters
+    ----------
+    errors : one array (n_elements,) per phase
+        As multiples of what is allowed, from
+        :func:`ergowalk.transcription.residuals.mesh_residuals`.
+    """
+    return tuple(
+        _divided(edges, 1 + (error > 1.0).astype(int) + (error > THRICE).astype(int))
+        for edges, error in zip(mesh, errors, strict=True)
+    )
+
+
+def finer(mesh: Mesh, errors: Sequence[Array], share: float = 1 / 3) -> Mesh:
+    """The mesh with that ``share`` of its elements halved whose errors are largest."""
+    every = np.concatenate(list(errors))
+    order = np.argsort(-every, kind="stable")
+    chosen = np.zeros(len(every), dtype=int)
+    chosen[order[: max(1, math.ceil(share * len(every)))]] = 1
+    ends = np.cumsum([len(error) for error in errors])[:-1]
+    return tuple(
+        _divided(edges, 1 + more) for edges, more in zip(mesh, np.split(chosen, ends), strict=True)
+    )
+
+
+def _divided(edges: Array, pieces: NDArray[np.int64]) -> Array:
+    """Each element in as many equal pieces as asked."""
+    parts = [
+        start + (end - start) * np.arange(n) / n
+        for start, end, n in zip(edges[:-1], edges[1:], pieces, strict=True)
+    ]
+    return np.concatenate([*parts, edges[-1:]])

@@ -46,7 +46,7 @@ def body_motion(walker: Walker, phase: Phase, samples: Samples) -> BodyMotion:
 def load_sharing(walker: Walker, phase: Phase, samples: Samples, motion: BodyMotion) -> Sharing:
     """What the trailing foot carries [N]: from its ankle and metatarsal moments.
 
-    The moments are continuous and piecewise linear, so the force is as smooth as the motion.
+    The moments are continuous, and parabolas within an element: the force is continuous too.
     """
     zero = np.zeros_like(motion.trunk.angle)
     if phase.legs[1] is not Contact.TOE:

@@ -1,8 +1,9 @@
 """The language in which a problem is put to the collocation: phases and functions of an instant.
 
 Coordinates have rates and accelerations (second-order dynamics); controls are continuous and
-linear within an element; algebraic variables live at the Gauss points. A phase tells what must
-hold inside, at mesh points, and at the ends of elements. Nothing here knows about walking.
+parabolas within an element (straight lines where an element has two Gauss points); algebraic
+variables live at the Gauss points. A phase tells what must hold inside, at mesh points, and at the
+ends of elements. Nothing here knows about walking.
 """
 
 from __future__ import annotations
@@ -10,6 +11,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 INF = float("inf")
 
@@ -53,6 +57,29 @@ class Instant:
     controls: Mapping[str, Any]
     algebraics: Mapping[str, Any]
     control_slopes: Mapping[str, Any] = field(default_factory=dict)
+    curves: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class TimeCurves:
+    """Given functions of time alone that phase functions use, a corridor's edges say.
+
+    Attributes
+    ----------
+    names
+        One per function; a phase function finds them in ``Instant.curves``.
+    evaluate
+        Row of instants (1, n) -> their values, then first, then second time derivatives, as a
+        matrix (3 len(names), n), of CasADi MX or of numbers.
+    """
+
+    names: tuple[str, ...]
+    evaluate: Callable[[Any], Any]
+
+    def at(self, times: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+        """Their values at instants (n,), by name."""
+        table = np.asarray(self.evaluate(np.asarray(times, dtype=float)[None, :]))
+        return dict(zip(self.names, table, strict=False))
 
 
 @dataclass
@@ -99,6 +126,8 @@ class PhaseModel:
     at_ends
         Inequalities at both ends of each element and between its Gauss points, from which
         algebraics are extrapolated: without them a force leaks between the points.
+    curves
+        Given functions of time that the functions of this phase see in ``Instant.curves``.
     """
 
     name: str
@@ -112,6 +141,7 @@ class PhaseModel:
     path: InstantFunction
     at_ends: InstantFunction
     path_everywhere: bool = False
+    curves: TimeCurves | None = None
 
 
 @dataclass(frozen=True)

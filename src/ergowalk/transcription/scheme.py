@@ -12,6 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.polynomial.legendre import leggauss
+from numpy.polynomial.polynomial import polyfromroots
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
@@ -50,7 +51,8 @@ class GaussScheme:
         basis = []
         for j, c in enumerate(self.points):
             others = np.delete(self.points, j)
-            basis.append(Polynomial.fromroots(others) / np.prod(c - others))
+            # Polynomial.fromroots refuses the empty product that a single point has
+            basis.append(Polynomial(polyfromroots(others)) / np.prod(c - others))
         return basis
 
     def _evaluate(self, integrations: int, s: ArrayLike) -> Array:

@@ -57,6 +57,7 @@ def walking_problem(
             path,
             at_ends,
             path_everywhere=phase.legs[1] is Contact.TOE,
+            curves=walker.corridor_curves,
         )
 
     return _chain(walker, order, model, with_loads=True)
@@ -96,6 +97,7 @@ def kinematic_problem(problem: GaitProblem, order: PhaseOrder) -> PhasedProblem:
             inside,
             path,
             nothing,
+            curves=walker.corridor_curves,
         )
 
     return _chain(walker, order, model, with_loads=False)

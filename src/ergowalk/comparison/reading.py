@@ -1,0 +1,141 @@
+"""What a comparison and the pictures read from a gait: curves of the stride, body, human data."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from ergowalk.body import Body
+from ergowalk.comparison.signals import COMPARED
+from ergowalk.corridors import HumanGait, human_gait
+from ergowalk.errors import GaitFileError
+
+Array = NDArray[np.float64]
+
+DEFAULT_SOURCE = "winter-natural"
+"""Human data of a problem that names none."""
+
+
+@dataclass(frozen=True)
+class StrideCurves:
+    """Leg 1's curves over the stride: ``fraction`` 0 ... 1 (n,), and (n,) values by signal."""
+
+    fraction: Array
+    values: dict[str, Array]
+
+
+def human_of(dataset: xr.Dataset, folder: Path | None = None) -> HumanGait:
+    """The human data named in the gait's problem, ``[corridors] source``.
+
+    ``folder`` is where a relative path starts.
+
+    Raises
+    ------
+    GaitFileError
+        If the attribute ``problem`` is missing or names no human data.
+    CorridorError
+        If the human data cannot be read.
+    """
+    try:
+        corridors = tomllib.loads(str(dataset.attrs["problem"])).get("corridors", {})
+        source = corridors.get("source", DEFAULT_SOURCE)
+        if not isinstance(source, str):
+            raise TypeError(f"corridors.source = {source!r} is no name")
+    except (KeyError, AttributeError, TypeError, tomllib.TOMLDecodeError) as error:
+        raise _unusable_attribute("problem", "TOML text with a table [corridors]", error) from None
+    return human_gait(source, folder)
+
+
+def body_of(dataset: xr.Dataset) -> Body:
+    """The body of a gait, from the attribute ``body_parameters``.
+
+    Raises
+    ------
+    GaitFileError
+        If the attribute is missing, no JSON object of the paper's symbols, or no possible body.
+    """
+    try:
+        symbols = json.loads(str(dataset.attrs["body_parameters"]))
+        return Body.from_symbols(symbols)
+    except (KeyError, AttributeError, ValueError) as error:
+        rule = "a JSON object of the paper's symbols that make a possible body"
+        raise _unusable_attribute("body_parameters", rule, error) from None
+
+
+def stride_curves(dataset: xr.Dataset) -> StrideCurves:
+    """The eight signals of leg 1 in degrees, N/kg and N m/kg, in the paper's signs.
+
+    Raises
+    ------
+    GaitFileError
+        If a variable is missing or not finite, or the times do not run forward from 0.
+    """
+    mass = body_of(dataset).total_mass
+    values = {}
+    for signal in COMPARED:
+        if signal.name.startswith("reaction"):
+            axis = signal.name[-1]
+            force = curve(dataset, "ground_reaction_force", {"leg": 1, "axis": axis})
+            values[signal.name] = force / mass
+        else:
+            joint, kind = signal.name.split("_")
+            raw = curve(dataset, f"joint_{kind}", {"leg": 1, "joint": joint})
+            values[signal.name] = np.degrees(raw) if kind == "angle" else raw / mass
+    return StrideCurves(stride_fraction(dataset), values)
+
+
+def curve(
+    dataset: xr.Dataset, variable: str, labels: Mapping[str, int | str] = {}, gaps: bool = False
+) -> Array:
+    """A variable's samples (n,) over time at coordinate ``labels``, such as {"leg": 1}.
+
+    Raises
+    ------
+    GaitFileError
+        If it is missing, does not run over time alone, or, unless it may have ``gaps``, is not
+        finite everywhere.
+    """
+    try:
+        array = dataset[variable].sel(labels)
+        if array.dims != ("time",):
+            raise ValueError(f"has dimensions {array.dims}")
+        values = np.asarray(array.values, dtype=float)
+    except (KeyError, ValueError, TypeError):
+        where = "".join(f", {dim} = {label}" for dim, label in labels.items())
+        rule = f"must be there as numbers over time{where}"
+        raise GaitFileError(rule, _REMEDY, field=variable) from None
+    if not gaps and not np.all(np.isfinite(values)):
+        raise GaitFileError("must be finite at every instant", _REMEDY, field=variable)
+    return values
+
+
+def stride_fraction(dataset: xr.Dataset) -> Array:
+    """Times over the stride time, (n,), from 0 to 1.
+
+    Raises
+    ------
+    GaitFileError
+        If the times do not run forward from 0.
+    """
+    time = curve(dataset, "time")
+    if len(time) < 2 or time[0] != 0 or time[-1] <= 0 or np.any(np.diff(time) < 0):
+        raise GaitFileError(
+            "must run from 0 to the stride time and never decrease", _REMEDY, field="time"
+        )
+    fraction: Array = time / time[-1]
+    return fraction
+
+
+def _unusable_attribute(name: str, rule: str, error: Exception) -> GaitFileError:
+    reason = f"missing or unknown: {error}" if isinstance(error, KeyError) else str(error)
+    return GaitFileError(f"must be {rule} ({reason})", _REMEDY, field=f"attribute {name}")
+
+
+_REMEDY = "give a file written by 'ergowalk solve'"

@@ -13,7 +13,13 @@ from hypothesis.extra.numpy import arrays
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
-from ergowalk.solution.energy import absolute_integral, joint_energies, smooth_pieces
+from ergowalk.solution.energy import absolute_integrals, joint_energies, smooth_pieces
+
+
+def absolute_integral(time, power) -> float:
+    """Of one power."""
+    return float(absolute_integrals(time, np.asarray(power)[:, None])[0])
+
 
 Array = NDArray[np.float64]
 

@@ -64,6 +64,10 @@ def styled() -> Iterator[None]:
         yield
 
 
+_FAST: dict[str, dict[str, object]] = {"png": {"pil_kwargs": {"compress_level": 3}}, "svg": {}}
+"""Level 3 takes a third of the time of the default 6, for files a tenth larger."""
+
+
 def save(figure: Figure, path: Path) -> Path:
     """Write a figure in the format that the suffix names; the same figure, the same bytes.
 
@@ -81,7 +85,7 @@ def save(figure: Figure, path: Path) -> Path:
     metadata = {"Date": None, "Creator": None} if kind == "svg" else {"Software": None}
     try:
         with styled():
-            figure.savefig(part, format=kind, dpi=DPI, metadata=metadata)
+            figure.savefig(part, format=kind, dpi=DPI, metadata=metadata, **_FAST[kind])
         os.replace(part, path)
     except OSError as error:
         raise OutputError(

@@ -90,7 +90,7 @@ def cut(mesh: Mesh, errors: Sequence[Array]) -> Mesh:
     )
 
 
-def finer(mesh: Mesh, errors: Sequence[Array], share: float = 1 / 3) -> Mesh:
+def finer(mesh: Mesh, errors: Sequence[Array], share: float = 0.25) -> Mesh:
     """The mesh with that ``share`` of its elements halved whose errors are largest."""
     every = np.concatenate(list(errors))
     order = np.argsort(-every, kind="stable")

@@ -161,7 +161,8 @@ class _PhaseErrors:
             for contact, leg in zip(self.phase.legs, points, strict=True)
             for height in c.eq4_clearances(contact, leg)
         ]
-        return np.max([np.zeros_like(self.time), *(-h for h in heights)], axis=0)
+        depth: Array = np.max([np.zeros_like(self.time), *(-h for h in heights)], axis=0)
+        return depth
 
     def _angles(self) -> Array:
         """Distance of the joint angles from their corridors (6) [degrees]."""
@@ -194,7 +195,7 @@ def _dense(walker: Walker, phase: Phase, samples: Samples) -> tuple[BodyMotion, 
 
 def _powers(phase: Phase, motion: BodyMotion, loads: Loads, count: int = SAMPLES) -> Array:
     """Joint powers (10) [W], (joints of both legs, n_elements, count)."""
-    powers = []
+    powers: list[Array] = []
     for moments, leg in zip(loads.moments, motion.legs, strict=True):
         powers += eq10_joint_powers(moments, motion.trunk, leg)
     assert len(powers) == 2 * len(JOINTS)

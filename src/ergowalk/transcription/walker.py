@@ -107,7 +107,8 @@ class Walker:
         bounds = {n: limits.of(n[:-2]) or np.inf for n in names}
         unknowns = [Unknown(n, -bounds[n], bounds[n]) for n in names]
         if phase.legs[1] is Contact.TOE and self.linear_sharing:
-            unknowns += [Unknown(n) for n in SHARING]
+            toes = {"pressure_shift": (-self.leg.toe_length, 0.0)}  # between joint and tip
+            unknowns += [Unknown(n, *toes.get(n, (-np.inf, np.inf))) for n in SHARING]
         return tuple(unknowns)
 
     def algebraics(self, phase: Phase) -> tuple[Unknown, ...]:

@@ -22,6 +22,29 @@ IndexArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
+class Chain:
+    """First and second derivatives of the rows of a kernel.
+
+    Attributes
+    ----------
+    jacobian : SX (n_g, n_v)
+    hessian : function
+        Multipliers, SX (n_g,) -> Hessian of their product with the rows, SX (n_v, n_v).
+    """
+
+    jacobian: ca.SX
+    hessian: Callable[[ca.SX], ca.SX]
+
+    @classmethod
+    def of(cls, rows: ca.SX, variables: ca.SX) -> Chain:
+        """By differentiating the expressions."""
+        return cls(
+            ca.jacobian(rows, variables),
+            lambda multipliers: ca.hessian(ca.dot(multipliers, rows), variables)[0],
+        )
+
+
+@dataclass(frozen=True)
 class Kernel:
     """Symbolic heart of a block: cost and constraint rows of one use.
 
@@ -40,6 +63,8 @@ class Kernel:
         Its results are appended to the parameters, so nothing is differentiated through them: the
         expressions hold a Taylor polynomial around the present point instead, whose value and
         first two derivatives are those of the function.
+    chain : Chain, optional
+        Derivatives of the rows in a cheaper form than differentiating the expressions.
     """
 
     name: str
@@ -48,6 +73,7 @@ class Kernel:
     cost: ca.SX
     rows: ca.SX
     expansion: Callable[[Any, Any], Any] | None = None
+    chain: Chain | None = None
 
     def all_parameters(self, variables: Any, parameters: Any) -> Any:
         """Parameters of all uses with the results of the expansion, as MX or DM."""
@@ -70,15 +96,17 @@ class Kernel:
     @cached_property
     def jacobian(self) -> ca.Function:
         """(v, p) -> sparse Jacobian of the rows."""
-        jacobian = ca.jacobian(self.rows, self.variables)
+        chain = self.chain or Chain.of(self.rows, self.variables)
+        jacobian = chain.jacobian
         return ca.Function(f"{self.name}_jacobian", [self.variables, self.parameters], [jacobian])
 
     @cached_property
     def hessian(self) -> ca.Function:
         """(v, p, weight, multipliers) -> upper triangle of the Hessian of the Lagrangian."""
         weight, multipliers = ca.SX.sym("w"), ca.SX.sym("l", self.rows.numel())
-        lagrangian = weight * self.cost + ca.dot(multipliers, self.rows)
-        hessian = ca.triu(ca.hessian(lagrangian, self.variables)[0])
+        chain = self.chain or Chain.of(self.rows, self.variables)
+        hessian = ca.hessian(weight * self.cost, self.variables)[0] + chain.hessian(multipliers)
+        hessian = ca.triu(hessian)
         inputs = [self.variables, self.parameters, weight, multipliers]
         return ca.Function(f"{self.name}_hessian", inputs, [hessian])
 

@@ -144,11 +144,11 @@ class Minimum:
 
 _WARM_DUALS = {
     "warm_start_init_point": "yes",
-    "warm_start_bound_push": 1e-6,
-    "warm_start_bound_frac": 1e-6,
-    "warm_start_slack_bound_push": 1e-6,
-    "warm_start_slack_bound_frac": 1e-6,
-    "warm_start_mult_bound_push": 1e-6,
+    "warm_start_bound_push": 1e-4,
+    "warm_start_bound_frac": 1e-4,
+    "warm_start_slack_bound_push": 1e-4,
+    "warm_start_slack_bound_frac": 1e-4,
+    "warm_start_mult_bound_push": 1e-4,
 }
 
 _SENTENCES = {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,7 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ergowalk.nlp import Kernel
-from ergowalk.transcription.phases import Instant, PhasedProblem, PhaseModel, State, Terms
+from ergowalk.transcription.functions import Call, CompiledFunction
+from ergowalk.transcription.phases import PhasedProblem, PhaseModel
+from ergowalk.transcription.rows import Rows
 from ergowalk.transcription.scheme import GaussScheme
 
 Array = NDArray[np.float64]
@@ -21,9 +23,7 @@ BETWEEN = (0.3, 0.7)
 limit becomes active."""
 
 
-PhaseFunctions = tuple[
-    "CompiledFunction", "CompiledFunction", "CompiledFunction", "CompiledFunction"
-]
+PhaseFunctions = tuple[CompiledFunction, CompiledFunction, CompiledFunction, CompiledFunction]
 """Compiled inside, path, path at mesh points, at ends of one phase."""
 
 
@@ -70,42 +70,40 @@ def phase_kernel(
     """The kernel of one element of a phase; ``functions`` if they have been compiled before."""
     local = _Local(phase, scheme)
     inside, path, path_at_mesh, at_ends = functions or compile_phase(phase)
-    rows = _Rows()
+    rows = Rows()
     _continuity(local, rows)
     cost: Any = 0.0
     absolutes: list[Any] = []
     slacks: list[Any] = []
     scale = phase.absolute_scale
     for j, (c, w) in enumerate(zip(scheme.points, scheme.weights, strict=True)):
-        powers, integrand = inside.add(rows, local, float(c))
+        call = local.call(inside, float(c))
+        rows.add_call(call)
         if phase.path_everywhere or j == scheme.m // 2:
-            path.add(rows, local, float(c))
-        n_abs = powers.numel()
-        plus, minus = ca.SX.sym(f"plus_{j}", n_abs), ca.SX.sym(f"minus_{j}", n_abs)
-        rows.add(plus - minus - powers / scale, ["power slacks"] * n_abs, 0.0, 0.0)
-        cost = cost + w * local.h * (scale * ca.sum1(plus + minus) + integrand)
-        absolutes.append(powers / scale)
+            rows.add_call(local.call(path, float(c)))
+        plus, minus = (ca.SX.sym(f"{sign}_{j}", inside.n_abs) for sign in ("plus", "minus"))
+        rows.add_slacks(call, plus - minus, scale)
+        cost = cost + w * local.h * (scale * ca.sum1(plus + minus) + call.integrand)
+        absolutes.append(call.absolute / scale)
         slacks += [plus, minus]
-    path_at_mesh.add(rows, local, 0.0)
+    rows.add_call(local.call(path_at_mesh, 0.0))
     for place in (0.0, *BETWEEN, 1.0):
-        at_ends.add(rows, local, place)
+        rows.add_call(local.call(at_ends, place))
     cost = cost + _control_rates(local, problem, rows)
     _control_bounds(local, rows)
     variables = ca.vertcat(local.variables, *slacks)
-    name = phase.name.replace("+", "_")
     given = local.given
     kernel = Kernel(
-        name,
+        phase.name.replace("+", "_"),
         variables,
         ca.vertcat(local.parameters, *(entry.symbols for entry in given.values())),
         cost,
-        ca.vertcat(*rows.expressions),
+        rows.expression,
         _expansion(phase, variables, local, tuple(given)) if given else None,
+        rows.chain(variables),
     )
     absolute = ca.Function("absolute", [variables, local.parameters], [ca.vertcat(*absolutes)])
-    lower, upper = np.concatenate(rows.lower), np.concatenate(rows.upper)
-    n_abs = absolute.numel_out(0) // scheme.m
-    return PhaseKernel(kernel, lower, upper, tuple(rows.labels), absolute, n_abs)
+    return PhaseKernel(kernel, *rows.bounds, tuple(rows.labels), absolute, inside.n_abs)
 
 
 def compile_phase(phase: PhaseModel) -> PhaseFunctions:
@@ -116,65 +114,18 @@ def compile_phase(phase: PhaseModel) -> PhaseFunctions:
     return inside, path, at_mesh, CompiledFunction(phase, phase.at_ends, "at_ends")
 
 
-class _Rows:
-    """Constraint rows as they come."""
+@dataclass(frozen=True)
+class _Called:
+    """Rows that are a function of an instant, called at one place of the element.
 
-    def __init__(self) -> None:
-        self.expressions: list[Any] = []
-        self.labels: list[str] = []
-        self.lower: list[Array] = []
-        self.upper: list[Array] = []
-
-    def add(self, expression: Any, labels: Sequence[str], lower: Any, upper: Any) -> None:
-        self.expressions.append(expression)
-        self.labels += labels
-        self.lower.append(np.broadcast_to(np.asarray(lower, dtype=float), len(labels)))
-        self.upper.append(np.broadcast_to(np.asarray(upper, dtype=float), len(labels)))
-
-
-class CompiledFunction:
-    """A phase function turned once into a CasADi function, then called at many instants.
-
-    ``kind`` "mesh" hides the algebraic variables, which do not exist at mesh points.
+    ``weight`` is what the outputs are multiplied with; ``first`` and ``count`` say which they are.
     """
 
-    def __init__(self, phase: PhaseModel, function: Callable[[Instant], Terms], kind: str) -> None:
-        names = [c.name for c in phase.coordinates]
-        controls = [u.name for u in phase.controls]
-        algebraics = [z.name for z in phase.algebraics]
-        sizes = (1, *[len(names)] * 3, *[len(controls)] * 2, len(algebraics))
-        symbols = [ca.SX.sym(f"s{i}", n) for i, n in enumerate(sizes)]
-        t, value, rate, acceleration, control, slope, z = symbols
-        curve_names = () if phase.curves is None else phase.curves.names
-        curves = ca.SX.sym("curves", len(curve_names))
-        terms = function(
-            Instant(
-                t,
-                {n: State(value[i], rate[i], acceleration[i]) for i, n in enumerate(names)},
-                {n: control[i] for i, n in enumerate(controls)},
-                {} if kind == "mesh" else {n: z[i] for i, n in enumerate(algebraics)},
-                {n: slope[i] for i, n in enumerate(controls)},
-                {n: curves[i] for i, n in enumerate(curve_names)},
-            )
-        )
-        self.labels = [row[0] for row in terms.rows]
-        self.lower = np.array([row[2] for row in terms.rows])
-        self.upper = np.array([row[3] for row in terms.rows])
-        outputs = [
-            ca.vertcat(*(ca.SX(row[1]) for row in terms.rows)),
-            ca.vertcat(*(ca.SX(e) for e in terms.absolute)),
-            ca.SX(terms.integrand),
-        ]
-        self.function = ca.Function(kind, [*symbols, curves], outputs)
-        self.sees_curves = bool(curve_names) and ca.depends_on(ca.vertcat(*outputs), curves)
-
-    def add(self, rows: _Rows, local: _Local, s: float) -> tuple[Any, Any]:
-        """Add the rows at local fraction s; returns absolute-value arguments and integrand."""
-        curves = local.curves(s) if self.sees_curves else 0.0
-        values, absolute, integrand = self.function(*local.arguments(s), curves)
-        if self.labels:
-            rows.add(values, self.labels, self.lower, self.upper)
-        return absolute, integrand
+    function: CompiledFunction
+    arguments: Any
+    first: int
+    count: int
+    weight: float
 
 
 @dataclass(frozen=True)
@@ -252,6 +203,12 @@ class _Local:
             self.given[s] = _Given(ca.SX.sym(f"given_{len(self.given)}", 1 + 3 * count), count)
         return self.given[s].at(self.time(s))
 
+    def call(self, function: CompiledFunction, s: float) -> Call:
+        """A phase function at local fraction s."""
+        count = 0 if self.phase.curves is None else len(self.phase.curves.names)
+        curves = self.curves(s) if function.sees_curves else ca.SX(count, 1)
+        return function.at(ca.vertcat(*self.arguments(s), curves))
+
     def arguments(self, s: float) -> list[Any]:
         """Time, values, rates, accelerations, controls, slopes, algebraics at local fraction s."""
         scheme = self.scheme
@@ -274,7 +231,7 @@ class _Local:
         return (chord + 4 * (1 - 2 * s) * self.bulge[i]) / self.h
 
 
-def _continuity(local: _Local, rows: _Rows) -> None:
+def _continuity(local: _Local, rows: Rows) -> None:
     """Value and rate at the right end are the exact integrals of the acceleration."""
     _, value, rate, *_ = local.arguments(1.0)
     scale = np.array([c.rate_scale for c in local.phase.coordinates])
@@ -283,7 +240,7 @@ def _continuity(local: _Local, rows: _Rows) -> None:
     rows.add((local.right[1] - rate) / scale, labels, 0.0, 0.0)
 
 
-def _control_bounds(local: _Local, rows: _Rows) -> None:
+def _control_bounds(local: _Local, rows: Rows) -> None:
     """Bounds of the controls inside the element.
 
     A parabola lies inside the hull of its ends and its middle Bernstein coefficient, so bounding
@@ -296,7 +253,7 @@ def _control_bounds(local: _Local, rows: _Rows) -> None:
             rows.add(middle / u.scale, ["control bounds"], bounds[0], bounds[1])
 
 
-def _control_rates(local: _Local, problem: PhasedProblem, rows: _Rows) -> Any:
+def _control_rates(local: _Local, problem: PhasedProblem, rows: Rows) -> Any:
     """Bounds on, and cost of, the slopes of the controls in this element.
 
     A slope is linear, so it is largest at an end; the integral of its square is exact by

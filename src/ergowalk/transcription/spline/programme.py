@@ -29,7 +29,7 @@ from ergowalk.transcription.spline.semi_inverse import MEASURES, Instant
 Array = NDArray[np.float64]
 
 GAUSS_POINTS = 4
-"""Instants of each knot interval at which integrands are sampled."""
+"""Instants of each knot interval at which integrands are sampled, unless more are asked for."""
 
 LEAST_SPAN = 0.05
 """Least distance [m] between the resting heel and the resting toe tip in double support: the
@@ -78,6 +78,8 @@ class SplineProgramme:
     start : (data,) array, optional
         z-bar: initial values of all data, as :attr:`start` of another programme on the same
         knots; dependent ones are ignored. Without it they are fitted to the human means.
+    samples : int
+        Gauss points of each knot interval.
 
     Raises
     ------
@@ -93,9 +95,10 @@ class SplineProgramme:
         rho: float = 1e-6,
         extras: Sequence[str] = (),
         start: Array | None = None,
+        samples: int = GAUSS_POINTS,
     ) -> None:
         _check_span(problem)
-        self.problem, self.rhythm, self.rho = problem, rhythm, rho
+        self.problem, self.rhythm, self.rho, self.samples = problem, rhythm, rho, samples
         self.curves = Curves(problem, rhythm, intervals, rho)
         self.sampler = Sampler(problem, self.curves)
         self.extras = tuple(extras)
@@ -153,7 +156,17 @@ class SplineProgramme:
         kept = self.extras if extras is None else extras
         fine = Curves(self.problem, self.rhythm, intervals, self.rho)
         start = carried_over(self.data(unknowns), self.curves, fine)
-        return SplineProgramme(self.problem, self.rhythm, intervals, self.rho, kept, start)
+        return SplineProgramme(
+            self.problem, self.rhythm, intervals, self.rho, kept, start, self.samples
+        )
+
+    def with_samples(self, unknowns: ArrayLike, samples: int) -> SplineProgramme:
+        """The programme on the same knots with other samples, z-bar being the same walk."""
+        start = self.data(unknowns)
+        intervals = len(self.curves.grid) - 1
+        return SplineProgramme(
+            self.problem, self.rhythm, intervals, self.rho, self.extras, start, samples
+        )
 
     def pieces(self, unknowns: ArrayLike, longest: float | None = None) -> list[MotionPiece]:
         """The half stride on a dense grid, a piece for each knot interval.
@@ -209,7 +222,7 @@ class SplineProgramme:
         data, missing = self.settled(unknowns)
         shared = self.sampler.shared(data)
         total: ca.MX = ca.MX.zeros(1 + len(MEASURES))
-        grids = self.sampler.gauss(GAUSS_POINTS)
+        grids = self.sampler.gauss(self.samples)
         for instant, grid in zip(self.sampler.instants, grids, strict=True):
             samples = self.sampler.mapped(instant, grid, _integrands, data, shared)
             total = total + samples @ ca.DM(grid.weights)

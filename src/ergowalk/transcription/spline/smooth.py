@@ -22,7 +22,7 @@ from ergowalk.nlp import Block, Kernel, NonlinearProgramme
 from ergowalk.problem import DoubleSupport
 from ergowalk.problem.objective import energy_per_metre
 from ergowalk.transcription.spline.curves import HIP, SWING_FOOT, TRUNK
-from ergowalk.transcription.spline.programme import GAUSS_POINTS, SplineProgramme
+from ergowalk.transcription.spline.programme import SplineProgramme
 from ergowalk.transcription.spline.rows import (
     Asked,
     Row,
@@ -132,11 +132,9 @@ class SmoothProgramme:
 
     def _grids(self) -> list[Grid]:
         """Gauss points and knots of each phase in time order; knots have no weight."""
-        sampler, found = self.spline.sampler, []
-        for grid, (phase, knots) in zip(
-            sampler.gauss(GAUSS_POINTS), sampler.intervals(), strict=True
-        ):
-            inside = grid.times.reshape(-1, GAUSS_POINTS)
+        sampler, samples, found = self.spline.sampler, self.spline.samples, []
+        for grid, (phase, knots) in zip(sampler.gauss(samples), sampler.intervals(), strict=True):
+            inside = grid.times.reshape(-1, samples)
             times = np.append(np.column_stack([knots[:-1], inside]).ravel(), knots[-1])
             own = np.column_stack([np.zeros(len(inside)), grid.weights.reshape(inside.shape)])
             weights = np.append(own.ravel(), 0.0)

@@ -113,6 +113,15 @@ def test_objective_and_rows_are_those_of_all_uses(x: Array) -> None:
 
 @LAW
 @given(points)
+def test_evaluation_without_derivatives_gives_the_same_numbers(x: Array) -> None:
+    cost, rows = WHOLE.evaluate(x)
+    expected = WHOLE.oracle.values(x, [])
+    assert cost == pytest.approx(float(expected[0]), rel=1e-14, abs=1e-14)
+    np.testing.assert_allclose(rows, dense(expected[1]).ravel(), rtol=1e-14, atol=1e-14)
+
+
+@LAW
+@given(points)
 def test_gradient_is_that_of_the_whole_function(x: Array) -> None:
     _, gradient = WHOLE.oracle.gradient(x, [])
     own = ca.Function("own", [X], [ca.gradient(COST, X)])(x)

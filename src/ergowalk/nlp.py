@@ -27,19 +27,20 @@ class Chain:
 
     Attributes
     ----------
-    jacobian : SX (n_g, n_v)
+    jacobian : function
+        () -> SX (n_g, n_v).
     hessian : function
         Multipliers, SX (n_g,) -> Hessian of their product with the rows, SX (n_v, n_v).
     """
 
-    jacobian: ca.SX
+    jacobian: Callable[[], ca.SX]
     hessian: Callable[[ca.SX], ca.SX]
 
     @classmethod
     def of(cls, rows: ca.SX, variables: ca.SX) -> Chain:
         """By differentiating the expressions."""
         return cls(
-            ca.jacobian(rows, variables),
+            lambda: ca.jacobian(rows, variables),
             lambda multipliers: ca.hessian(ca.dot(multipliers, rows), variables)[0],
         )
 
@@ -97,7 +98,7 @@ class Kernel:
     def jacobian(self) -> ca.Function:
         """(v, p) -> sparse Jacobian of the rows."""
         chain = self.chain or Chain.of(self.rows, self.variables)
-        jacobian = chain.jacobian
+        jacobian = chain.jacobian()
         return ca.Function(f"{self.name}_jacobian", [self.variables, self.parameters], [jacobian])
 
     @cached_property
@@ -210,9 +211,20 @@ class NonlinearProgramme:
             ),
         )
 
+    def evaluate(self, x: Array) -> tuple[float, Array]:
+        """Objective and rows at x; cheap where no derivative is asked for."""
+        cost, rows = 0.0, []
+        for block in self.blocks:
+            v = x[block.indices]
+            p = block.kernel.all_parameters(v, block.parameters)
+            c, g = _mapped(block.kernel.values, block.uses)(v, p)
+            cost += float(ca.sum2(c))
+            rows.append(np.asarray(g).ravel(order="F"))
+        return cost, np.concatenate(rows)
+
     def violations(self, x: Array, rows: Array | None = None) -> dict[str, float]:
         """Largest violation of each named constraint at x, in the rows' own scale."""
-        values = np.asarray(self.oracle.values(x, [])[1]).ravel() if rows is None else rows
+        values = self.evaluate(x)[1] if rows is None else rows
         lower, upper = self.row_bounds
         excess = np.maximum(np.maximum(lower - values, values - upper), 0.0)
         worst: dict[str, float] = {}

@@ -96,7 +96,7 @@ class Collocation:
                 x[where.algebraics[:, :, k]] = at_gauss.algebraic[z.name].reshape(shape)
         for index in layout.times.values():
             x[index] = np.clip(x[index], layout.lower[index], layout.upper[index])
-        x = np.clip(x / layout.scale, layout.lower, layout.upper)
+        x = np.clip(np.nan_to_num(x / layout.scale), layout.lower, layout.upper)
         return self._with_slacks(x)
 
     def _with_slacks(self, x: Array) -> Array:

@@ -71,10 +71,10 @@ class PhaseCurves:
         )
 
     def at(self, fraction: Array) -> Samples:
-        """Curves at fractions of the phase."""
+        """Curves at fractions of the phase, in ascending order."""
         k = np.clip(np.searchsorted(self.fractions, fraction, "right") - 1, 0, self.elements - 1)
         s = (fraction - self.fractions[k]) / np.diff(self.fractions)[k]
-        return joined([self.in_element(int(e), np.array([u])) for e, u in zip(k, s, strict=True)])
+        return joined([self.in_element(int(e), s[k == e]) for e in np.unique(k)])
 
 
 @dataclass(frozen=True)

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from ergowalk.transcription.phases import Instant, PhaseModel, State, Terms
+
+_ONCE = {"cse": True}
+"""Expressions that occur twice are computed once."""
 
 
 class CompiledFunction:
@@ -46,14 +50,21 @@ class CompiledFunction:
         arguments, integrand = ca.vertcat(*symbols), ca.SX(terms.integrand)
         everything = ca.vertcat(outputs, integrand)
         self.sees_curves = bool(given) and bool(ca.depends_on(everything, curves))
-        multipliers = ca.SX.sym("multipliers", outputs.numel())
-        hessian, gradient = ca.hessian(ca.dot(multipliers, outputs), arguments)
-        jacobian, once = ca.jacobian(outputs, arguments), {"cse": True}
         self.function = ca.Function(kind, [arguments], [outputs, integrand])
-        self.jacobian = ca.Function(f"{kind}_jacobian", [arguments], [jacobian], once)
-        self.hessian = ca.Function(
-            f"{kind}_hessian", [arguments, multipliers], [hessian, gradient], once
-        )
+        self._arguments, self._outputs = arguments, outputs
+
+    @cached_property
+    def jacobian(self) -> ca.Function:
+        """Arguments -> derivatives of the outputs."""
+        jacobian = ca.jacobian(self._outputs, self._arguments)
+        return ca.Function("jacobian", [self._arguments], [jacobian], _ONCE)
+
+    @cached_property
+    def hessian(self) -> ca.Function:
+        """(arguments, multipliers) -> Hessian and gradient of multipliers times outputs."""
+        multipliers = ca.SX.sym("multipliers", self._outputs.numel())
+        derivatives = ca.hessian(ca.dot(multipliers, self._outputs), self._arguments)
+        return ca.Function("hessian", [self._arguments, multipliers], derivatives, _ONCE)
 
     def at(self, arguments: Any) -> Call:
         """The function at symbolic arguments."""

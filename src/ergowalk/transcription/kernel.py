@@ -51,7 +51,11 @@ class KernelStore:
 
 @dataclass(frozen=True)
 class PhaseKernel:
-    """The kernel of a phase with the bounds and labels of its rows."""
+    """The kernel of a phase with the bounds, labels and places of its rows.
+
+    ``places`` are the local fractions of the element at which the rows are asked; not a number
+    for rows that belong to the element as a whole.
+    """
 
     kernel: Kernel
     lower: Array
@@ -59,6 +63,7 @@ class PhaseKernel:
     labels: tuple[str, ...]
     absolute: ca.Function
     n_abs: int
+    places: Array
 
 
 def phase_kernel(
@@ -78,17 +83,17 @@ def phase_kernel(
     scale = phase.absolute_scale
     for j, (c, w) in enumerate(zip(scheme.points, scheme.weights, strict=True)):
         call = local.call(inside, float(c))
-        rows.add_call(call)
+        rows.add_call(call, float(c))
         if phase.path_everywhere or j == scheme.m // 2:
-            rows.add_call(local.call(path, float(c)))
+            rows.add_call(local.call(path, float(c)), float(c))
         plus, minus = (ca.SX.sym(f"{sign}_{j}", inside.n_abs) for sign in ("plus", "minus"))
         rows.add_slacks(call, plus - minus, scale)
         cost = cost + w * local.h * (scale * ca.sum1(plus + minus) + call.integrand)
         absolutes.append(call.absolute / scale)
         slacks += [plus, minus]
-    rows.add_call(local.call(path_at_mesh, 0.0))
+    rows.add_call(local.call(path_at_mesh, 0.0), 0.0)
     for place in (0.0, *BETWEEN, 1.0):
-        rows.add_call(local.call(at_ends, place))
+        rows.add_call(local.call(at_ends, place), place)
     cost = cost + _control_rates(local, problem, rows)
     _control_bounds(local, rows)
     variables = ca.vertcat(local.variables, *slacks)
@@ -103,7 +108,9 @@ def phase_kernel(
         rows.chain(variables),
     )
     absolute = ca.Function("absolute", [variables, local.parameters], [ca.vertcat(*absolutes)])
-    return PhaseKernel(kernel, *rows.bounds, tuple(rows.labels), absolute, inside.n_abs)
+    return PhaseKernel(
+        kernel, *rows.bounds, tuple(rows.labels), absolute, inside.n_abs, np.array(rows.places)
+    )
 
 
 def compile_phase(phase: PhaseModel) -> PhaseFunctions:

@@ -8,6 +8,7 @@ work in every iteration.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -44,10 +45,15 @@ class _Block:
 
 
 class Rows:
-    """Constraint rows as they come, with labels and bounds."""
+    """Constraint rows as they come, with labels, bounds and places.
+
+    A place is the local fraction of the element at which a phase function was called; not a
+    number for rows that belong to the element as a whole.
+    """
 
     def __init__(self) -> None:
         self.labels: list[str] = []
+        self.places: list[float] = []
         self._blocks: list[_Block] = []
         self._lower: list[Array] = []
         self._upper: list[Array] = []
@@ -66,12 +72,12 @@ class Rows:
         """Rows of a plain expression."""
         self._append(_Block(expression), labels, lower, upper)
 
-    def add_call(self, call: Call) -> None:
-        """The rows of a phase function."""
+    def add_call(self, call: Call, place: float) -> None:
+        """The rows of a phase function at a local fraction of the element."""
         f = call.function
         if f.labels:
             block = _Block(ca.SX(len(f.labels), 1), call)
-            self._append(block, f.labels, f.lower, f.upper)
+            self._append(block, f.labels, f.lower, f.upper, place)
 
     def add_slacks(self, call: Call, difference: Any, scale: float) -> None:
         """``difference`` of two slacks equals what an absolute value is taken of, over scale."""
@@ -80,22 +86,33 @@ class Rows:
         block = _Block(difference, call, len(call.function.labels), -1.0 / scale)
         self._append(block, ["power slacks"] * call.function.n_abs, 0.0, 0.0)
 
-    def _append(self, block: _Block, labels: Sequence[str], lower: Any, upper: Any) -> None:
+    def _append(
+        self,
+        block: _Block,
+        labels: Sequence[str],
+        lower: Any,
+        upper: Any,
+        place: float = math.nan,
+    ) -> None:
+        self.places += [place] * len(labels)
         self._blocks.append(block)
         self.labels += labels
         self._lower.append(np.broadcast_to(np.asarray(lower, dtype=float), len(labels)))
         self._upper.append(np.broadcast_to(np.asarray(upper, dtype=float), len(labels)))
 
     def chain(self, variables: Any) -> Chain:
-        """First and second derivatives of all rows."""
+        """First and second derivatives of all rows, formed when they are asked for."""
         calls = list({id(b.call): b.call for b in self._blocks if b.call is not None}.values())
-        jacobians = {id(call): call.jacobian(variables) for call in calls}
-        parts = []
-        for block in self._blocks:
-            part = ca.jacobian(block.plain, variables)
-            if block.call is not None:
-                part = part + block.weight * jacobians[id(block.call)][block.outputs, :]
-            parts.append(part)
+
+        def jacobian() -> Any:
+            jacobians = {id(call): call.jacobian(variables) for call in calls}
+            parts = []
+            for block in self._blocks:
+                part = ca.jacobian(block.plain, variables)
+                if block.call is not None:
+                    part = part + block.weight * jacobians[id(block.call)][block.outputs, :]
+                parts.append(part)
+            return ca.vertcat(*parts)
 
         def hessian(multipliers: Any) -> Any:
             first, plain = 0, ca.SX(0)
@@ -111,4 +128,4 @@ class Rows:
                 total = total + call.hessian(weights[id(call)], variables)
             return total
 
-        return Chain(ca.vertcat(*parts), hessian)
+        return Chain(jacobian, hessian)

@@ -55,9 +55,13 @@ class GaussScheme:
             basis.append(Polynomial(polyfromroots(others)) / np.prod(c - others))
         return basis
 
+    @cached_property
+    def _integrated(self) -> list[list[Polynomial]]:
+        """The basis, its integrals from 0, and theirs."""
+        once = [b.integ() for b in self._basis]
+        return [self._basis, once, [b.integ() for b in once]]
+
     def _evaluate(self, integrations: int, s: ArrayLike) -> Array:
         s = np.atleast_1d(np.asarray(s, dtype=float))
-        columns = [
-            (b.integ(integrations) if integrations else b)(s) * np.ones_like(s) for b in self._basis
-        ]
+        columns = [b(s) * np.ones_like(s) for b in self._integrated[integrations]]
         return np.stack(columns, axis=-1)

@@ -182,7 +182,7 @@ class Walker:
                 if joint != "ankle" or known:
                     mean, half = (instant.curves[f"{joint}_{i + 1} {edge}"] for edge in BAND)
                     place = c.eq6_corridor_position(angle, mean, half)
-                    places.append((f"corridor {joint} (6)", place))
+                    places.append((f"corridor {joint} {i + 1} (6)", place))
         return places
 
     @cached_property

@@ -160,12 +160,11 @@ class SplineProgramme:
             self.problem, self.rhythm, intervals, self.rho, kept, start, self.samples
         )
 
-    def with_samples(self, unknowns: ArrayLike, samples: int) -> SplineProgramme:
-        """The programme on the same knots with other samples, z-bar being the same walk."""
-        start = self.data(unknowns)
+    def with_samples(self, samples: int) -> SplineProgramme:
+        """The same functions of the same unknowns from another number of samples."""
         intervals = len(self.curves.grid) - 1
         return SplineProgramme(
-            self.problem, self.rhythm, intervals, self.rho, self.extras, start, samples
+            self.problem, self.rhythm, intervals, self.rho, self.extras, self.start, samples
         )
 
     def pieces(self, unknowns: ArrayLike, longest: float | None = None) -> list[MotionPiece]:

@@ -1,0 +1,238 @@
+"""What a bound costs: sensitivities of the optimum from its multipliers.
+
+At an optimum the derivative of the least objective with respect to anything given is that of the
+Lagrangian, the point and the multipliers held: no gait has to be found again. The objective is E
+plus the small smoothing costs, per metre.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ergowalk.corridors import ANGLES
+from ergowalk.errors import ErgowalkError
+from ergowalk.problem import GaitProblem
+from ergowalk.problem.objective import energy_per_metre
+from ergowalk.solution import Solution
+from ergowalk.solvers.ipopt import Minimum
+from ergowalk.solving.memory import recall
+from ergowalk.solving.stages import OrderSearch, StageResult
+from ergowalk.transcription.collocation import Collocation
+from ergowalk.transcription.walking import walking_problem
+from ergowalk.values import Value
+
+Array = NDArray[np.float64]
+
+STEP = 1e-6
+"""Relative change of a given number from which its derivative is formed."""
+
+
+@dataclass(frozen=True)
+class Price:
+    """What one given number costs.
+
+    ``name`` is its path in the problem file, ``slope`` the derivative of the least objective
+    [J/m per unit of the number], ``elasticity`` its relative change per relative change.
+    """
+
+    name: str
+    value: float
+    slope: float
+    elasticity: float
+
+
+@dataclass(frozen=True)
+class CorridorPrices:
+    """What the edges of the angle corridors cost, over the stride of one leg.
+
+    Attributes
+    ----------
+    fraction : (n,) array
+        Middles of the elements, as fractions of the stride, ascending.
+    width : (n,) array
+        Lengths of the elements, as fractions of the stride.
+    lower, upper : {joint: (n,) array}
+        J/m saved if that edge moves outward by one degree during the element, per 1 % of the
+        stride; never negative but for rounding.
+    """
+
+    fraction: Array
+    width: Array
+    lower: dict[str, Array]
+    upper: dict[str, Array]
+
+    def rows(self) -> dict[str, dict[str, Array]]:
+        """The curves by joint and edge."""
+        return {j: {"lower": self.lower[j], "upper": self.upper[j]} for j in self.lower}
+
+    def total(self, joint: str) -> float:
+        """J/m saved if both edges of a joint move outward by one degree everywhere."""
+        both = self.lower[joint] + self.upper[joint]
+        return float(np.sum(both * self.width) * 100)
+
+
+@dataclass(frozen=True)
+class Prices:
+    """The price list of a gait: given numbers, dearest first, and corridor edges."""
+
+    energy_per_metre: float
+    numbers: tuple[Price, ...]
+    corridors: CorridorPrices
+
+
+def prices(solution: Solution) -> Prices:
+    """What every given number and every corridor edge costs, from the stored multipliers.
+
+    Raises
+    ------
+    GaitFileError
+        If the file keeps none (a gait of another method, or of an older version).
+    """
+    search, result = recall(solution)
+    optimum, found = _Optimum(search, result), []
+    for name, value in given_numbers(solution.problem):
+        slope = optimum.slope(name, value)
+        if slope is not None:
+            found.append(Price(name, value, slope, slope * value / solution.energy_per_metre))
+    found.sort(key=lambda price: -abs(price.elasticity))
+    return Prices(solution.energy_per_metre, tuple(found), corridor_prices(search, result))
+
+
+def with_fixed_multipliers(result: StageResult) -> Minimum:
+    """The minimum with the multipliers of fixed variables, which the solver never sees.
+
+    They are what is missing to stationarity: gradient plus Jacobian' multipliers of rows plus
+    multipliers of bounds is zero.
+    """
+    programme, minimum = result.collocation.programme, result.minimum
+    gradient = np.asarray(programme.oracle.gradient(minimum.x, [])[1]).ravel()
+    jacobian = programme.oracle.jacobian(minimum.x, [])[1]
+    rest = -gradient - np.asarray(jacobian.T @ minimum.row_multipliers).ravel()
+    fixed = programme.lower == programme.upper
+    bounds = np.where(fixed, rest, minimum.variable_multipliers)
+    return replace(minimum, variable_multipliers=bounds)
+
+
+def given_numbers(problem: GaitProblem) -> Iterator[tuple[str, float]]:
+    """(path, value) of every number of the problem that a gait depends on."""
+    for name in ("step_length_m", "stride_time_s"):
+        yield name, getattr(problem, name)
+    yield "corridors.width_sd", problem.corridors.width_sd
+    for table in ("limits", "body"):
+        yield from _numbers(getattr(problem, table), table)
+
+
+def _numbers(table: Value, path: str) -> Iterator[tuple[str, float]]:
+    for name in type(table).model_fields:
+        value = getattr(table, name)
+        if isinstance(value, Value):
+            yield from _numbers(value, f"{path}.{name}")
+        elif isinstance(value, float | int) and not isinstance(value, bool) and value != 0:
+            yield f"{path}.{name}", float(value)
+
+
+class _Optimum:
+    """The Lagrangian at an optimum as a function of everything given."""
+
+    def __init__(self, search: OrderSearch, result: StageResult) -> None:
+        self.search, self.result = search, result
+        self.minimum = with_fixed_multipliers(result)
+        self.least = self._lagrangian(search.problem)
+
+    def slope(self, name: str, value: float) -> float | None:
+        """Derivative of the least objective [J/m] with respect to one number of the problem.
+
+        None where the problem does not allow the number to be changed alone.
+        """
+        for step in (STEP * abs(value), -STEP * abs(value)):
+            try:
+                problem = changed(self.search.problem, name, value + step)
+            except ErgowalkError:
+                continue
+            return (self._lagrangian(problem) - self.least) / step
+        return None
+
+    def _lagrangian(self, problem: GaitProblem) -> float:
+        """Objective plus multipliers times distances from the active bounds [J/m].
+
+        The point and the multipliers are those of the optimum, everything given is the problem's.
+        """
+        walker, minimum = self.search.walker, self.minimum
+        phased = walking_problem(problem, self.search.order, walker.smoothing)
+        programme = Collocation(phased, self.result.collocation.mesh, self.result.points).programme
+        total, rows = programme.evaluate(minimum.x)
+        total += _pressed(minimum.row_multipliers, rows, *programme.row_bounds)
+        bounds = programme.lower, programme.upper
+        total += _pressed(minimum.variable_multipliers, minimum.x, *bounds)
+        mass = problem.body.total_mass
+        energy: float = energy_per_metre(total * mass, problem.step_length_m)
+        return energy
+
+
+def changed(problem: GaitProblem, name: str, value: float) -> GaitProblem:
+    """The problem with the number at a path replaced."""
+    first, *rest = name.split(".")
+    inner = _replaced(getattr(problem, first), rest, value) if rest else value
+    replaced: GaitProblem = problem.replace(**{first: inner})
+    return replaced
+
+
+def _replaced(table: Value, path: list[str], value: float) -> Value:
+    first, *rest = path
+    inner = _replaced(getattr(table, first), rest, value) if rest else value
+    replaced: Value = table.replace(**{first: inner})
+    return replaced
+
+
+def _pressed(multipliers: Array, values: Array, lower: Array, upper: Array) -> float:
+    """Multipliers times the distance from the bound that each presses on: above 0 the upper."""
+    bound = np.where(multipliers > 0, upper, lower)
+    finite = np.isfinite(bound) & (multipliers != 0)
+    return float(multipliers[finite] @ (values - bound)[finite])
+
+
+def corridor_prices(search: OrderSearch, result: StageResult) -> CorridorPrices:
+    """Price of every corridor edge, element by element, over the stride of leg 1.
+
+    Leg 2 in [0, T/2] is leg 1 half a stride later.
+    """
+    collocation, curves = result.collocation, result.trajectory
+    stride, rows = search.problem.stride_time_s, result.minimum.row_multipliers
+    edges = search.walker.corridor_curves
+    parts: list[tuple[float, float, dict[str, tuple[float, float]]]] = []
+    first = 0
+    for kernel, mesh, phase in zip(
+        collocation.kernels, collocation.mesh, curves.phases, strict=True
+    ):
+        n_e, n_g = len(mesh) - 1, len(kernel.labels)
+        own = rows[first : first + n_e * n_g].reshape(n_e, n_g)
+        first += n_e * n_g
+        places = np.where(np.isnan(kernel.places), 0.5, kernel.places)
+        starts, widths = phase.start + phase.duration * mesh[:-1], phase.duration * np.diff(mesh)
+        time = starts[:, None] + widths[:, None] * places
+        half = edges.at(time.ravel())
+        for leg, shift in ((1, 0.0), (2, 0.5)):
+            found = {}
+            for joint in ANGLES:
+                mine = np.array([label == f"corridor {joint} {leg} (6)" for label in kernel.labels])
+                width = np.degrees(half[f"{joint}_{leg} half width"].reshape(n_e, n_g))
+                price = np.where(mine, own / width, 0.0)  # J/kg per degree
+                found[joint] = [np.maximum(sign * price, 0.0).sum(axis=1) for sign in (-1, 1)]
+            for k in range(n_e):
+                at = ((starts[k] + widths[k] / 2) / stride + shift) % 1.0
+                parts.append(
+                    (at, widths[k] / stride, {j: (s[0][k], s[1][k]) for j, s in found.items()})
+                )
+    parts.sort(key=lambda part: part[0])
+    width = np.array([part[1] for part in parts])
+    unit = energy_per_metre(search.walker.mass, search.problem.step_length_m) / (100 * width)
+    return CorridorPrices(
+        np.array([part[0] for part in parts]),
+        width,
+        {j: unit * np.array([part[2][j][0] for part in parts]) for j in ANGLES},
+        {j: unit * np.array([part[2][j][1] for part in parts]) for j in ANGLES},
+    )

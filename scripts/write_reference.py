@@ -25,6 +25,7 @@ from ergowalk.quantities import QUANTITIES
 
 API = {
     **{name: f"ergowalk.{name}" for name in ergowalk.__all__},
+    "SplineOptions": "ergowalk.solving.SplineOptions",
     "audit": "ergowalk.audit.audit",
     "AuditReport": "ergowalk.audit.AuditReport",
     "compare": "ergowalk.comparison.compare",

@@ -103,13 +103,14 @@ class FakeSolver:
         self.attributes: dict[str, object] = {}
         self.error: BaseException | None = None
         self.calls: list[GaitProblem] = []
+        self.choices: list[dict[str, object]] = []
         self.interrupts = 0
         self.afterwards: Callable[[], object] | None = None
         self.stages: tuple[tuple[str, int], ...] = (("kinematic fit", 2), ("free rhythm", 3))
 
-    def __call__(self, problem, *, method, solver, progress=None):
-        assert (method, solver) == ("collocation", "ipopt")
+    def __call__(self, problem, *, progress=None, **choices):
         self.calls.append(problem)
+        self.choices.append(choices)
         for _ in range(self.interrupts):
             signal.raise_signal(signal.SIGINT)
         for stage, count in self.stages:

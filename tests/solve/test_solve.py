@@ -23,7 +23,7 @@ from ergowalk.problem import GaitProblem, preset
 from ergowalk.solution import Progress, Solution
 from ergowalk.solution.progress import Report
 from ergowalk.solvers.ipopt import Ipopt
-from ergowalk.solving import stages, verb
+from ergowalk.solving import SplineOptions, stages, verb
 from ergowalk.solving.stages import with_times
 from ergowalk.transcription import motion
 from ergowalk.transcription.layout import Mesh
@@ -61,13 +61,25 @@ def stopped() -> Run:
 
 
 @pytest.mark.parametrize(
-    ("method", "solver"), [("magic", "ipopt"), ("collocation", "magic"), ("spline", "rosenbrock")]
+    ("choices", "match"),
+    [
+        ({"method": "magic"}, "method = 'magic': no such method; use 'collocation' or 'spline'"),
+        ({"solver": "magic"}, "solver = 'magic': no such solver; use 'ipopt' for method 'coll"),
+        (
+            {"solver": "rosenbrock"},
+            "solver = 'rosenbrock': cannot solve method 'collocation'; use 'ipopt', or method 'spl",
+        ),
+        ({"spline": SplineOptions()}, "spline: means nothing to method 'collocation'; leave knots"),
+    ],
 )
-def test_a_method_that_does_not_exist_is_refused(method: str, solver: str) -> None:
-    with pytest.raises(
-        ProblemError, match=rf"method = '{method}/{solver}': no such method; use .*'collocation'"
-    ):
-        verb.solve(FIXED, method=method, solver=solver)
+def test_what_does_not_go_together_is_refused(choices: dict[str, Any], match: str) -> None:
+    with pytest.raises(ProblemError, match=match):
+        verb.solve(FIXED, **choices)
+
+
+def test_a_start_is_for_a_collocation(paper_gait_file: Path) -> None:
+    with pytest.raises(ProblemError, match=r"start: means nothing to method 'spline'.*; start a"):
+        verb.solve(FIXED, method="spline", start=Solution.load(paper_gait_file))
 
 
 # --- when it does not converge -----------------------------------------------------------------

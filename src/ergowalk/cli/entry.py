@@ -63,6 +63,13 @@ def _compare(arguments: Namespace) -> int:
     return ACCEPTABLE
 
 
+def _price(arguments: Namespace) -> int:
+    from ergowalk.cli.price import run_price
+
+    run_price(arguments)
+    return ACCEPTABLE
+
+
 def _presets(arguments: Namespace) -> int:
     from ergowalk.cli.problems import run_presets
 
@@ -81,6 +88,7 @@ COMMANDS: dict[str, Callable[[Namespace], int]] = {
     "solve": _solve,
     "audit": _audit,
     "compare": _compare,
+    "price": _price,
     "presets": _presets,
     "init": _init,
 }

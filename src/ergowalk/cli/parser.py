@@ -9,8 +9,9 @@ from typing import Any, NoReturn
 from ergowalk import __version__
 from ergowalk.errors import InputError
 
-METHODS = ("collocation",)
-SOLVERS = ("ipopt",)
+METHODS = ("collocation", "spline")
+SOLVERS = ("ipopt", "rosenbrock")
+ASKED = ("paper", "everything")
 
 _STATUS = (
     "Exit status: 0 an acceptable answer; 1 it ran but there is no acceptable answer; "
@@ -43,6 +44,7 @@ def build_parser() -> Parser:
     _add_solve(commands)
     _add_audit(commands)
     _add_compare(commands)
+    _add_price(commands)
     _add_presets(commands)
     _add_init(commands)
     return parser
@@ -82,7 +84,32 @@ def _add_solve(commands: Any) -> None:
         "--solver",
         choices=SOLVERS,
         default=SOLVERS[0],
-        help="what solves the finite problem (default: %(default)s)",
+        help="what solves the finite problem; rosenbrock, which needs no derivatives, is for "
+        "the spline method alone (default: %(default)s)",
+    )
+    _add_spline(parser)
+    parser.add_argument(
+        "--start",
+        type=_path,
+        metavar="GAIT.nc",
+        help="a stored gait, by whatever method, from which a collocation begins",
+    )
+    parser.add_argument(
+        "--starts",
+        type=int,
+        metavar="N",
+        help="search N times by collocation, from the human means and from seeded disturbances "
+        "of them, and keep the best",
+    )
+    parser.add_argument(
+        "--seed", type=int, default=0, metavar="S", help="of the disturbances (default: 0)"
+    )
+    parser.add_argument(
+        "--workers",
+        type=int,
+        metavar="W",
+        help="processes that share the starts; the answer does not depend on it (default: one "
+        "for each processor)",
     )
     parser.add_argument(
         "-o",
@@ -94,6 +121,28 @@ def _add_solve(commands: Any) -> None:
     _add_json(parser)
     parser.add_argument("--quiet", action="store_true", help="no progress on standard error")
     parser.add_argument("--no-figures", action="store_true", help="write no figures")
+
+
+def _add_spline(parser: Parser) -> None:
+    group = parser.add_argument_group("choices of the spline method, which E depends on")
+    group.add_argument(
+        "--knots",
+        type=int,
+        metavar="N",
+        help="knot intervals of half a stride (default: 12 with rosenbrock, 30 with ipopt)",
+    )
+    group.add_argument(
+        "--rho",
+        type=float,
+        metavar="R",
+        help="freedom of the knots in (13) in s^3, 0 to interpolate (default: 1e-6)",
+    )
+    group.add_argument(
+        "--asked",
+        choices=ASKED,
+        help="the measures of (19) alone, or all that the problem asks for (default: paper "
+        "with rosenbrock, everything with ipopt)",
+    )
 
 
 def _add_audit(commands: Any) -> None:
@@ -116,6 +165,26 @@ def _add_compare(commands: Any) -> None:
         "Each curve against the human mean and standard deviation that its problem names.",
     )
     parser.add_argument("gaits", nargs="+", type=_path, metavar="GAIT.nc", help="stored gaits")
+    _add_json(parser)
+
+
+def _add_price(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "price",
+        "say what every bound and every given number of a stored gait costs",
+        "From the multipliers that a collocation leaves in its file: J/m per unit of step length, "
+        "stride time, limits, corridor width and body, and the price of the corridors over the "
+        "stride, drawn beside the gait.",
+    )
+    parser.add_argument("gait", type=_path, metavar="GAIT.nc", help="a gait found by collocation")
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=_path,
+        metavar="DIR",
+        help="folder for prices.png and prices.svg (default: that of the gait)",
+    )
     _add_json(parser)
 
 

@@ -6,6 +6,7 @@ from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ergowalk.cli.output import result_folder
 from ergowalk.cli.streams import emit, emit_json
 from ergowalk.errors import InputError
 from ergowalk.solution import Solution
@@ -44,8 +45,9 @@ def run_price(arguments: Namespace) -> None:
         corridors.width,
         corridors.rows(),
     )
-    folder.mkdir(parents=True, exist_ok=True)
-    drawn = [style.save(figure, folder / f"{FIGURE}.{kind}") for kind in style.FORMATS]
+    files = [f"{FIGURE}.{kind}" for kind in style.FORMATS]
+    with result_folder(folder, files):
+        drawn = [style.save(figure, folder / file) for file in files]
     if arguments.json:
         emit_json({"file": str(path), **_as_dict(found), "figures": [str(p) for p in drawn]})
     else:

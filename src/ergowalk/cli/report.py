@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ergowalk.cli.paper import BesidePaper, beside_paper
 from ergowalk.problem import JOINTS, GaitProblem
 
 if TYPE_CHECKING:
@@ -82,6 +84,7 @@ class Result:
             "solve_time_s": _number(attributes.get("solve_time")),
             "audit": None if self.audit is None else self.audit.as_dict(),
             "comparison": None if self.comparison is None else self.comparison.as_dict(),
+            "paper": None if (beside := self.beside_paper()) is None else beside.as_dict(),
             "folder": str(self.folder),
             "files": [*self.files, "report.md"],
         }
@@ -89,6 +92,7 @@ class Result:
     def rows(self) -> Rows:
         """The short table, label and text."""
         found, problem = self.as_dict(), self.solution.problem
+        attributes, beside = self.solution.dataset.attrs, self.beside_paper()
         speed = 2 * problem.step_length_m / problem.stride_time_s
         joules = f"{found['energy_per_metre']:.2f} J/m"
         shares = [f"{joint} {share:.0%}" for joint, share in found["energy_share"].items()]
@@ -105,16 +109,22 @@ class Result:
             ("rhythm", _rhythm_text(found["rhythm"], found["rhythm_fixed"])),
             ("phase order", _order_text(found["phase_order"], problem)),
             ("peak R_y", f"{peak:.3f} body weights"),
-            ("method", found["method"]),
+            ("method", method_text(attributes)),
             (
                 "effort",
                 f"{found['iterations']} iterations, {found['solve_time_s']:.1f} CPU s, "
                 f"{found['build_time_s']:.1f} s to set up",
             ),
+            *([] if beside is None else [("paper", beside.line())]),
+            *([("starts", starts_text(attributes["starts"]))] if "starts" in attributes else []),
             *(("audit" if i == 0 else "", text) for i, text in enumerate(self._audit_lines())),
             ("status", f"{'acceptable' if self.accepted else 'NOT ACCEPTABLE'}: {found['status']}"),
             ("files", f"{self.folder}: {summarised(found['files'])}"),
         ]
+
+    def beside_paper(self) -> BesidePaper | None:
+        """The gait beside what the paper prints, if it was found by the paper's method."""
+        return beside_paper(self.solution.dataset, self.comparison)
 
     def table(self) -> str:
         """The short table as plain text."""
@@ -132,7 +142,7 @@ class Result:
             audit = _preformatted(self.audit.table())
         if self.comparison is not None:
             comparison = _preformatted(self.comparison.table())
-        figures = _figure_lines(self.files) or ["none"]
+        figures, beside = _figure_lines(self.files) or ["none"], self.beside_paper()
         parts = [
             f"# Gait: {name}",
             "\n".join(["| | |", "|---|---|", *rows]),
@@ -140,6 +150,7 @@ class Result:
             audit,
             "## Comparison with human walking",
             comparison,
+            *([] if beside is None else [beside.markdown()]),
             "## Figures",
             "\n".join(figures),
             "## Again",
@@ -177,11 +188,33 @@ def energy_shares(solution: Solution) -> dict[str, float]:
     return {joint: part / total if total > 0 else math.nan for joint, part in parts.items()}
 
 
+def starts_text(stored: str) -> str:
+    """What became of many starts, from the attribute of a gait."""
+    found = json.loads(stored)
+    optima = ", ".join(f"{o['energy_per_metre']:.2f} J/m ({o['hits']})" for o in found["optima"])
+    return (
+        f"{found['accepted']} of {found['starts']} accepted (seed {found['seed']}); "
+        f"distinct optima and their hits: {optima or 'none'}"
+    )
+
+
 def peak_reaction(solution: Solution) -> float:
     """Largest vertical reaction of one leg in body weights."""
     body = solution.problem.body
     vertical = solution.dataset["ground_reaction_force"].sel(axis="y").values
     return float(np.max(vertical)) / (body.total_mass * body.gravity_m_s2)
+
+
+def method_text(attributes: Mapping[str, Any]) -> str:
+    """The method, with the choices that E depends on."""
+    method = str(attributes.get("method", ""))
+    if method != "spline":
+        return method
+    knots, rho = attributes.get("knots"), attributes.get("rho")
+    asked = "the paper's constraints"
+    if attributes.get("asked") != "paper":
+        asked = "everything the problem asks for"
+    return f"spline, {attributes.get('solver')}, {knots} knots, rho {rho:g} s^3, {asked}"
 
 
 def fixed_instants(problem: GaitProblem) -> list[str]:

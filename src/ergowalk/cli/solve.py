@@ -5,7 +5,7 @@ from __future__ import annotations
 from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from ergowalk.cli.interrupts import Interrupts
 from ergowalk.cli.output import (
@@ -40,7 +40,7 @@ def run_solve(arguments: Namespace) -> bool:
         solved.
     """
     problem = _problem(arguments)
-    inputs = _stored_inputs(problem)
+    inputs, choices = _stored_inputs(problem), _choices(arguments)
     human = problem.human()  # now: its table may be gone when the solver is done
     folder = arguments.output or default_folder(problem.name)
     with (
@@ -50,7 +50,7 @@ def run_solve(arguments: Namespace) -> bool:
         for name, content in inputs.items():
             check_not_foreign(folder / name, content)
         progress.stage(f"solving {problem.name}: {problem.limits.sentence()}")
-        solution = _solved(problem, arguments, progress)
+        solution = _solved(problem, choices, progress)
         progress.stage(f"writing {folder}")
         stored = _store(solution, inputs, folder)
         figures = [] if arguments.no_figures else _draw(stored, human, folder)
@@ -85,7 +85,25 @@ def _stored_inputs(problem: GaitProblem) -> dict[str, bytes]:
     return {**files, "problem.toml": problem_to_toml(problem).encode("utf-8")}
 
 
-def _solved(problem: GaitProblem, arguments: Namespace, progress: ProgressLine) -> Solution:
+def _choices(arguments: Namespace) -> dict[str, Any]:
+    """How to solve: what ``ergowalk.solve`` takes beside the problem, checked."""
+    chosen: dict[str, Any] = {"method": arguments.method, "solver": arguments.solver}
+    spline = {k: getattr(arguments, k) for k in ("knots", "rho", "asked")}
+    spline = {name: value for name, value in spline.items() if value is not None}
+    if spline or arguments.method == "spline":
+        from ergowalk.solving import SplineOptions
+
+        chosen["spline"] = SplineOptions(**spline)
+    if arguments.start is not None:
+        from ergowalk.solution import Solution
+
+        chosen["start"] = Solution.load(arguments.start)
+    if arguments.starts is not None:
+        chosen |= {k: getattr(arguments, k) for k in ("starts", "seed", "workers")}
+    return chosen
+
+
+def _solved(problem: GaitProblem, choices: dict[str, Any], progress: ProgressLine) -> Solution:
     from ergowalk.solving import solve  # the solver takes longest to import
 
     with Interrupts() as interrupts:
@@ -94,7 +112,7 @@ def _solved(problem: GaitProblem, arguments: Namespace, progress: ProgressLine) 
             interrupts.check()
             progress(state)
 
-        solution = solve(problem, method=arguments.method, solver=arguments.solver, progress=watch)
+        solution = solve(problem, progress=watch, **choices)
         interrupts.check()
     return solution
 

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from ergowalk.audit import audit
 from ergowalk.gait.rhythm import PhaseOrder, Rhythm, half_stride_phases
 from ergowalk.problem import GaitProblem
 from ergowalk.problem.files import problem_to_toml
+from ergowalk.solution import Solution
 from ergowalk.solution.energy import joint_energies
 from ergowalk.solution.stride import Piece, stride_dataset
 from ergowalk.transcription.curves import Trajectory, joined
@@ -90,3 +93,15 @@ def describe(
             **extra,
         }
     )
+
+
+def judged(dataset: xr.Dataset, settled: bool, folder: Path | None) -> Solution:
+    """The solution with its verdict: the solver ``settled`` and every line of the audit holds."""
+    report = audit(dataset, folder)
+    status = dataset.attrs["solver_status"]
+    if settled and not report.accepted:
+        failed = ", ".join(line.key for line in report.failed)
+        status += f"; the audit rejects it: {failed}"
+    accepted = settled and report.accepted
+    verdict = dataset.assign_attrs(solver_status=status, acceptable=int(accepted))
+    return Solution(verdict, folder)

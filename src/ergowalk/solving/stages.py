@@ -22,6 +22,7 @@ from ergowalk.transcription.guess import (
 from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.layout import Mesh
 from ergowalk.transcription.mesh import walking_mesh
+from ergowalk.transcription.perturbation import Perturbation
 from ergowalk.transcription.phases import PhasedProblem
 from ergowalk.transcription.residuals import Residuals, mesh_residuals
 from ergowalk.transcription.walker import Smoothing, Walker
@@ -109,16 +110,33 @@ class OrderSearch:
         start = Start(human_guess(self.walker, self.order, times), times)
         return self._run("fit to human means", phased, self._mesh(times, 0.4), 2, start).trajectory
 
-    def fixed_rhythm(self, fit: Trajectory, level: float) -> StageResult:
-        """First dynamics: from the fit, rhythm held."""
-        start = Start(loaded_guess(self.walker, self.order, fit), fit.times)
+    def fixed_rhythm(
+        self, fit: Trajectory, level: float, perturbation: Perturbation | None = None
+    ) -> StageResult:
+        """First dynamics: from the fit, disturbed if asked for, rhythm held."""
+        guess = loaded_guess(self.walker, self.order, fit)
+        if perturbation is not None:
+            guess = perturbation.curves(fit, guess, self.order, self.problem.stride_time_s)
+        start = Start(guess, fit.times)
         phased, mesh = with_times(self.phased, fit.times), self._mesh(fit.times, level)
         solver = Ipopt(tolerance=1e-4)
         return self._run("rhythm held", phased, mesh, COARSE_POINTS, start, solver)
 
-    def free_rhythm(self, held: StageResult) -> StageResult:
+    def started(self, start: Start, level: float) -> StageResult:
+        """First dynamics from the curves of a solved gait, switching times free at once."""
+        solver = Ipopt(tolerance=1e-4, strategy="monotone", barrier_start=1e-3, push=1e-4)
+        mesh = self._mesh(start.times, level)
+        return self._run("from a gait", self.phased, mesh, FINE_POINTS, start, solver)
+
+    def free_rhythm(
+        self, held: StageResult, perturbation: Perturbation | None = None
+    ) -> StageResult:
         """All switching times as free as the problem lets them be, parabolic moments."""
         start, solver = Start.at(held.trajectory), Ipopt(tolerance=1e-5)
+        if perturbation is not None and not self.problem.rhythm.fixed:
+            rhythm = starting_rhythm(self.problem, self.order)
+            moved = perturbation.rhythm(self.problem, self.order, rhythm)
+            start = Start(start.guess, starting_times(self.problem, moved))
         mesh = held.collocation.mesh
         stage = "parabolic moments" if self.problem.rhythm.fixed else "rhythm free"
         return self._run(stage, self.phased, mesh, FINE_POINTS, start, solver)

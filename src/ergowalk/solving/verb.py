@@ -1,39 +1,21 @@
-"""solve(problem) -> Solution: stages, choice of the phase order, check on a finer mesh, audit."""
+"""solve(problem) -> Solution: by collocation, or by the paper's own method."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterable
 
-import xarray as xr
-
-from ergowalk.audit import audit
 from ergowalk.errors import ProblemError
 from ergowalk.problem import GaitProblem
-from ergowalk.problem.objective import energy_per_metre
 from ergowalk.solution import Solution
 from ergowalk.solution.progress import Report
-from ergowalk.solving.answer import dense_energy, dense_gait, describe, rhythm_of
-from ergowalk.solving.stages import COARSE_POINTS, Effort, OrderSearch, StageResult
-from ergowalk.transcription.kernel import KernelStore
-from ergowalk.transcription.mesh import cut, finer
+from ergowalk.solving.collocation import solve_collocation
+from ergowalk.solving.spline import solve_spline
+from ergowalk.solving.spline_options import SplineOptions
+from ergowalk.solving.starts import solve_from_starts
 from ergowalk.transcription.walker import Smoothing
 
-COARSE = 0.42
-"""Mesh level of the search."""
-
-ROUNDS, MOST_ELEMENTS = 6, 250
-"""How often elements are cut whose errors are too large, and how many there may be."""
-
-MESH_TOLERANCE = 0.01
-"""E may differ by this share between the reported and the next finer mesh."""
-
-IMPULSIVE_LEVELS = (0.42, 0.7, 1.1)
-"""Meshes on which a problem without moment-rate bound or cost is shown."""
-
-
-FAINT = Smoothing(moment_rate=1e-7, metatarsal_rate=1e-7)
-"""Smoothing of a problem without moment-rate bound: too little to hide that it is impulsive."""
+METHODS = {"collocation": ("ipopt",), "spline": ("ipopt", "rosenbrock")}
+"""Methods and their solvers."""
 
 
 def solve(
@@ -41,24 +23,42 @@ def solve(
     *,
     method: str = "collocation",
     solver: str = "ipopt",
+    spline: SplineOptions | None = None,
+    start: Solution | None = None,
+    starts: int | None = None,
+    seed: int = 0,
+    workers: int | None = None,
     progress: Report | None = None,
     smoothing: Smoothing | None = None,
 ) -> Solution:
     """Find the cheapest gait.
 
-    The search runs on a coarse mesh from the human mean curves, first with the rhythm held, then
-    free; with both phase orders possible both are tried and the cheaper kept. The reported gait
-    is on a finer mesh, checked on one finer still, and audited.
+    The collocation searches on a coarse mesh from the human mean curves, first with the rhythm
+    held, then free; with both phase orders possible both are tried and the cheaper kept. The
+    reported gait is on a finer mesh, checked on one finer still, and audited. The paper's own
+    method makes the free functions (11) smoothing splines, see :class:`SplineOptions`; it holds
+    the rhythm at the problem's starting one.
 
     Parameters
     ----------
     problem : GaitProblem
-    method, solver : str
-        "collocation" and "ipopt".
+    method : "collocation" or "spline"
+    solver : "ipopt" or "rosenbrock"
+        The latter, without derivatives, for the spline method alone.
+    spline : SplineOptions, optional
+        Choices of the spline method.
+    start : Solution, optional
+        A gait, by whatever method, from which a collocation begins instead of the human means.
+        If that fails it begins from those after all, and the status says so.
+    starts : int, optional
+        Search so many times, from the human means and from disturbances of them that ``seed``
+        determines, in ``workers`` processes, and return the best accepted gait with the
+        catalogue of optima in its attribute ``starts``: see
+        :func:`~ergowalk.solving.starts.solve_from_starts`.
     progress : callable, optional
         Called with a :class:`~ergowalk.solution.Progress` once an iteration.
     smoothing : Smoothing, optional
-        Small costs that single out one of many equal optima; not part of E.
+        Small costs of the collocation that single out one of many equal optima; not part of E.
 
     Returns
     -------
@@ -69,207 +69,58 @@ def solve(
     Raises
     ------
     ProblemError
-        For a method or solver that does not exist.
+        For a method, a solver or options that do not exist or do not go together.
     """
-    if (method, solver) != ("collocation", "ipopt"):
+    _check_method(method, solver, spline, start)
+    if starts is not None:
+        _check_starts(method, start)
+        return solve_from_starts(
+            problem, starts, seed, workers=workers, progress=progress, smoothing=smoothing
+        )
+    if method == "spline":
+        return solve_spline(problem, solver, spline or SplineOptions(), progress)
+    return solve_collocation(problem, smoothing, start, progress)
+
+
+def _check_method(
+    method: str, solver: str, spline: SplineOptions | None, start: Solution | None
+) -> None:
+    """Refuse what does not go together."""
+    if method not in METHODS:
         raise ProblemError(
-            "no such method",
-            "use method 'collocation' with solver 'ipopt'",
-            field="method",
-            value=f"{method}/{solver}",
+            "no such method", f"use {_either(METHODS)}", field="method", value=method
         )
-    effort, store = Effort(), KernelStore()
-    weights = smoothing or (Smoothing() if problem.limits.bounds_moment_rate else FAINT)
-    searches = [
-        OrderSearch(problem, order, weights, effort, progress, store)
-        for order in problem.rhythm.orders()
-    ]
-    candidates = [_coarse(search) for search in searches]
-    best = min(candidates, key=lambda c: (not c.result.minimum.converged, c.result.energy_at_nodes))
-    gait = _show_impulses(best) if not problem.limits.bounds_moment_rate else _refine(best)
-    return _finished(gait, candidates, effort, weights)
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """A stage of one phase order."""
-
-    search: OrderSearch
-    result: StageResult
-
-
-@dataclass(frozen=True)
-class Gait:
-    """The gait to be reported, with the record of its meshes."""
-
-    candidate: Candidate
-    dataset: xr.Dataset
-    history: list[dict[str, Any]]
-    status: str
-    settled: bool
-
-
-def _coarse(search: OrderSearch) -> Candidate:
-    held = search.fixed_rhythm(search.fit(), COARSE)
-    if not held.minimum.converged:
-        return Candidate(search, held)
-    return Candidate(search, search.free_rhythm(held))
-
-
-def _record(result: StageResult, energy: float, **flags: bool) -> dict[str, Any]:
-    """One line of the mesh history."""
-    return {
-        "elements": result.elements,
-        "points": result.points,
-        "energy_per_metre": energy,
-        "iterations": result.minimum.iterations,
-        "converged": result.minimum.converged,
-        **flags,
-    }
-
-
-def _dense(
-    candidate: Candidate, history: list[dict[str, Any]], **flags: bool
-) -> tuple[xr.Dataset, float]:
-    """Dense curves of a stage and their E [J/m], with a line more in the history."""
-    search, result = candidate.search, candidate.result
-    dataset = dense_gait(search.walker, search.order, result.trajectory)
-    energy = dense_energy(dataset, search.problem.step_length_m)
-    history.append(_record(result, energy, **flags))
-    return dataset, energy
-
-
-def _refine(coarse: Candidate) -> Gait:
-    """The reported gait and the check of its mesh."""
-    search, final = coarse.search, coarse
-    history: list[dict[str, Any]] = []
-    if not coarse.result.minimum.converged:
-        return _failed(coarse, history, "on the coarse mesh")
-    residuals = search.residuals(coarse.result)
-    for _ in range(ROUNDS):
-        if residuals.largest <= 1.0 or final.result.elements > MOST_ELEMENTS:
-            break
-        energy = energy_per_metre(residuals.work, search.problem.step_length_m)
-        history.append(_record(final.result, energy))
-        mesh = cut(final.result.collocation.mesh, residuals.errors)
-        final = Candidate(search, search.refined(final.result, mesh, residuals.largest))
-        if not final.result.minimum.converged:
-            return _failed(final, history, f"on {final.result.elements} elements")
-        residuals = search.residuals(final.result)
-    dataset, reported = _dense(final, history, final=True)
-    mesh = finer(final.result.collocation.mesh, residuals.errors)
-    check = Candidate(search, search.refined(final.result, mesh, 1.0))
-    _, confirmed = _dense(check, history, finer=True)
-    if not check.result.minimum.converged:
-        status = (
-            f"converged on {final.result.elements} elements, but the check on "
-            f"{check.result.elements} did not: {check.result.minimum.message}"
+    if solver not in METHODS[method]:
+        known = any(solver in solvers for solvers in METHODS.values())
+        raise ProblemError(
+            f"cannot solve method {method!r}" if known else "no such solver",
+            f"use {_either(METHODS[method])}"
+            + (", or method 'spline'" if known else f" for method {method!r}"),
+            field="solver",
+            value=solver,
         )
-        return Gait(final, dataset, history, status, settled=False)
-    change = confirmed / reported - 1
-    settled = abs(change) <= MESH_TOLERANCE
-    status = (
-        f"{'converged' if settled else 'not converged with the mesh'}: "
-        f"E = {reported:.2f} J/m on {final.result.elements} elements, "
-        f"{100 * change:+.2f} % on {check.result.elements}"
-    )
-    return Gait(final, dataset, history, status, settled)
+    if spline is not None and method != "spline":
+        raise ProblemError(
+            f"means nothing to method {method!r}",
+            "leave knots, rho and what is asked to method 'spline'",
+            field="spline",
+        )
+    if start is not None and method != "collocation":
+        raise ProblemError(
+            f"means nothing to method {method!r}, which begins with the human means",
+            "start a collocation with it",
+            field="start",
+        )
 
 
-def _show_impulses(coarse: Candidate) -> Gait:
-    """Three meshes of a problem whose moments may change without bound.
-
-    There is no optimum to converge to: each finer mesh allows sharper peaks and a lower E.
-    """
-    search = coarse.search
-    history: list[dict[str, Any]] = []
-    current, dataset = coarse, None
-    for level in IMPULSIVE_LEVELS:
-        result = search.remeshed(current.result, level, COARSE_POINTS)
-        if not result.minimum.converged:
-            if dataset is None:
-                return _failed(Candidate(search, result), [], f"on {result.elements} elements")
-            break
-        current = Candidate(search, result)
-        dataset, _ = _dense(current, history)
-        history[-1] |= _sharpness(dataset, search)
-    assert dataset is not None
-    history[-1]["final"] = True
-
-    def listed(key: str, form: str) -> str:
-        return ", ".join(format(r[key], form) for r in history)
-
-    status = (
-        "no smooth minimiser: nothing bounds the rate of the joint moments, so the optimum is "
-        f"impulsive; on {listed('elements', 'd')} elements E = "
-        f"{listed('energy_per_metre', '.1f')} J/m with moment rates up to "
-        f"{listed('peak_moment_rate', '.0f')} N m/(kg s) and reactions up to "
-        f"{listed('peak_reaction', '.2f')} body weights"
-    )
-    return Gait(current, dataset, history, status, settled=False)
+def _check_starts(method: str, start: Solution | None) -> None:
+    if method != "collocation" or start is not None:
+        raise ProblemError(
+            "go with method 'collocation' and without a start of your own",
+            "leave out either",
+            field="starts",
+        )
 
 
-def _sharpness(dataset: xr.Dataset, search: OrderSearch) -> dict[str, float]:
-    """Largest slope of a hip, knee or ankle moment per kg, and largest vertical reaction."""
-    walker = search.walker
-    moments = dataset["joint_moment"].to_numpy()[:, :, :3] / walker.mass
-    time = dataset["time"].to_numpy()
-    step = time[1:] - time[:-1]
-    slopes = abs(moments[1:] - moments[:-1])[step > 0] / step[step > 0][:, None, None]
-    weight = walker.mass * walker.gravity
-    reaction = dataset["ground_reaction_force"].sel(axis="y").to_numpy()
-    return {
-        "peak_moment_rate": float(slopes.max()),
-        "peak_reaction": float(reaction.max() / weight),
-    }
-
-
-def _failed(candidate: Candidate, history: list[dict[str, Any]], where: str) -> Gait:
-    dataset, _ = _dense(candidate, history, final=True)
-    status = f"not converged {where}: {candidate.result.minimum.message}"
-    return Gait(candidate, dataset, history, status, settled=False)
-
-
-def _finished(
-    gait: Gait, candidates: list[Candidate], effort: Effort, smoothing: Smoothing
-) -> Solution:
-    """Attributes, audit, and the verdict."""
-    search = gait.candidate.search
-    problem = search.problem
-    tried = {
-        str(c.search.order): {
-            "energy_at_nodes": c.result.energy_at_nodes,
-            "converged": c.result.minimum.converged,
-        }
-        for c in candidates
-    }
-    extra = {
-        "phase_order": str(search.order),
-        "phase_orders_tried": _json(tried),
-        "smoothing": _json(vars(smoothing)),
-        "iterations": effort.iterations,
-        "solve_time": effort.solve_time,
-        "build_time": effort.build_time,
-    }
-    dataset = describe(
-        gait.dataset,
-        problem,
-        rhythm_of(gait.candidate.result.trajectory, problem.stride_time_s),
-        method="collocation",
-        status=gait.status,
-        history=gait.history,
-        extra=extra,
-    )
-    report = audit(dataset, problem.folder)
-    accepted = gait.settled and report.accepted
-    if gait.settled and not report.accepted:
-        failed = ", ".join(line.key for line in report.failed)
-        dataset.attrs["solver_status"] += f"; the audit rejects it: {failed}"
-    dataset.attrs["acceptable"] = int(accepted)
-    return Solution(dataset, problem.folder)
-
-
-def _json(value: object) -> str:
-    import json
-
-    return json.dumps(value)
+def _either(names: Iterable[str]) -> str:
+    return " or ".join(repr(name) for name in names)

@@ -24,21 +24,25 @@ SHORTEST_START = 0.015
 
 
 def starting_rhythm(problem: GaitProblem, order: PhaseOrder) -> Rhythm:
-    """The printed rhythm inside the bounds, in the asked order, with room for every phase.
+    """The printed rhythm inside the bounds, in the asked order, with room for every phase."""
+    return rhythm_with_room(problem, order, problem.rhythm.start())
+
+
+def rhythm_with_room(problem: GaitProblem, order: PhaseOrder, wanted: Rhythm) -> Rhythm:
+    """The nearest rhythm inside the bounds of the problem, in the asked order.
 
     Every phase lasts at least :data:`SHORTEST_START`, or as long as the bounds allow.
     """
-    start, bounds = problem.rhythm.start(), problem.rhythm.bounds
-    toe_low, toe_high = bounds("toe_off")
+    toe_low, toe_high = problem.rhythm.bounds("toe_off")
     ranges = {
-        "heel_end": bounds("heel_end"),
+        "heel_end": problem.rhythm.bounds("heel_end"),
         "other_toe_off": (toe_low - 0.5, toe_high - 0.5),
-        "heel_off": bounds("heel_off"),
+        "heel_off": problem.rhythm.bounds("heel_off"),
     }
     inner = [phase.end for phase in half_stride_phases(order)[:-1]]
-    early = sorted((start.heel_end, start.other_toe_off))  # the asked order may exchange them
+    early = sorted((wanted.heel_end, wanted.other_toe_off))  # the asked order may exchange them
     lower, upper = zip((0.0, 0.0), *(ranges[name] for name in inner), (0.5, 0.5), strict=True)
-    found = _with_room((0.0, *early, start.heel_off, 0.5), lower, upper)
+    found = _with_room((0.0, *early, wanted.heel_off, 0.5), lower, upper)
     instants = dict(zip(inner, found[1:-1], strict=True))
     return Rhythm(instants["heel_end"], instants["heel_off"], instants["other_toe_off"] + 0.5)
 

@@ -101,7 +101,7 @@ def test_mistakes_name_the_problem_file(run):
             "asked = 'everything': is beyond Rosenbrock's method",
         ),
         (["solve", "--solver", "snopt"], "--solver: invalid choice: 'snopt'.*ipopt"),
-        (["solve", "--starts", "3"], "unrecognized arguments: --starts"),
+        (["solve", "--starts", "many"], "--starts: invalid int value: .many."),
         (["solve", "--qui"], "unrecognized arguments: --qui"),
         (["solve", "-o"], "-o/--output: expected one argument; see 'ergowalk solve --help'"),
         (["solve", "-o", ""], "-o/--output: the name is empty"),

@@ -115,6 +115,7 @@ class Result:
                 f"{found['iterations']} iterations, {found['solve_time_s']:.1f} CPU s, "
                 f"{found['build_time_s']:.1f} s to set up",
             ),
+            *_minimum_row(json.loads(attributes.get("mesh_history", "[]"))),
             *([] if beside is None else [("paper", beside.line())]),
             *([("starts", starts_text(attributes["starts"]))] if "starts" in attributes else []),
             *(("audit" if i == 0 else "", text) for i, text in enumerate(self._audit_lines())),
@@ -186,6 +187,19 @@ def energy_shares(solution: Solution) -> dict[str, float]:
     parts = solution.energy_by_joint
     total = sum(parts.values())
     return {joint: part / total if total > 0 else math.nan for joint, part in parts.items()}
+
+
+def _minimum_row(history: Sequence[Mapping[str, Any]]) -> Rows:
+    """What first and second derivatives say of the reported point, where the solver told."""
+    final = next((record for record in history if record.get("final")), {})
+    if final.get("strict_minimum") is None:
+        return []
+    curvature = (
+        "curved upwards in every free direction: a strict local minimum"
+        if final["strict_minimum"]
+        else "curvature not positive in every free direction: perhaps no strict minimum"
+    )
+    return [("minimum", f"gradient of the Lagrangian {final['stationarity']:.0e}, {curvature}")]
 
 
 def starts_text(stored: str) -> str:

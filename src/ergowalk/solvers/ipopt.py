@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import signal
 import threading
 import time
@@ -103,6 +104,7 @@ class Ipopt:
             violation=_violation(rows, lower, upper),
             build_time=built - began,
             solve_time=time.process_time() - built,
+            **_last(stats.get("iterations")),
         )
 
     def _options(self) -> dict[str, object]:
@@ -128,7 +130,11 @@ class Ipopt:
 
 @dataclass(frozen=True)
 class Minimum:
-    """Where a solver stopped, and what it says of it."""
+    """Where a solver stopped, and what it says of it.
+
+    ``stationarity`` is the largest entry of the gradient of the Lagrangian, ``regularisation``
+    what was added to its Hessian in the last iteration.
+    """
 
     x: Array
     objective: float
@@ -140,6 +146,17 @@ class Minimum:
     violation: float
     build_time: float
     solve_time: float
+    stationarity: float = math.nan
+    regularisation: float = math.nan
+
+    @property
+    def strict(self) -> bool | None:
+        """Whether the reduced Hessian of the last barrier problem is positive definite there.
+
+        It is if the last system had the right inertia without anything added to the Hessian;
+        None if that is not known.
+        """
+        return None if math.isnan(self.regularisation) else self.regularisation == 0.0
 
 
 _WARM_DUALS = {
@@ -169,6 +186,16 @@ _SENTENCES = {
 
 def _sentence(status: str) -> str:
     return _SENTENCES.get(status, status.replace("_", " ").lower())
+
+
+def _last(iterations: Mapping[str, Sequence[float]] | None) -> dict[str, float]:
+    """First- and second-order state of the last iteration, where the solver tells."""
+    if not iterations or not iterations.get("inf_du"):
+        return {}
+    return {
+        "stationarity": float(iterations["inf_du"][-1]),
+        "regularisation": float(iterations["regularization_size"][-1]),
+    }
 
 
 def _violation(rows: Array, lower: Array, upper: Array) -> float:

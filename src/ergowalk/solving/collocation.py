@@ -105,6 +105,10 @@ def _record(result: StageResult, energy: float, **flags: bool) -> dict[str, Any]
         "energy_per_metre": energy,
         "iterations": result.minimum.iterations,
         "converged": result.minimum.converged,
+        "violation": result.minimum.violation,
+        "stationarity": result.minimum.stationarity,
+        "strict_minimum": result.minimum.strict,
+        "solve_time": result.minimum.solve_time,
         **flags,
     }
 
@@ -231,6 +235,8 @@ def _finished(
         "iterations": effort.iterations,
         "solve_time": effort.solve_time,
         "build_time": effort.build_time,
+        # apart from the rest of the history: the same solve twice differs in its clocks alone
+        "mesh_times": _json([record.pop("solve_time") for record in gait.history]),
     }
     dataset = describe(
         gait.dataset,

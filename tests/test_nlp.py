@@ -130,6 +130,18 @@ def test_gradient_is_that_of_the_whole_function(x: Array) -> None:
     np.testing.assert_allclose(dense(gradient).ravel(), differences[0], rtol=1e-6, atol=1e-6)
 
 
+def test_the_gradient_has_an_entry_for_every_variable() -> None:
+    """Also for one that no block knows, and for one whose only block costs nothing."""
+    v = ca.SX.sym("v")
+    free = Kernel("free", v, ca.SX.sym("none", 0), ca.SX(0), v)
+    block = Block(free, np.array([[1]]), np.zeros((0, 1)), np.zeros(1), np.zeros(1), ("held",))
+    bounds = np.full(SIZE + 2, -3.0), np.full(SIZE + 2, 3.0)
+    oracle = NonlinearProgramme(*bounds, [*WHOLE.blocks, block]).oracle
+    assert oracle.gradient.nnz_out(1) == SIZE + 2
+    alone = NonlinearProgramme(*(b[:3] for b in bounds), [block]).oracle
+    assert alone.gradient.nnz_out(1) == 3
+
+
 @LAW
 @given(points)
 def test_jacobian_is_that_of_the_whole_function(x: Array) -> None:

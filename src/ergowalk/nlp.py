@@ -247,7 +247,8 @@ class NonlinearProgramme:
             for b, (v, p) in zip(self.blocks, local, strict=True)
         ]
         where = np.concatenate([b.indices.ravel(order="F") for b in self.blocks])
-        return _scatter(where, self.size) @ ca.vertcat(*pieces)
+        # the solver reads as many numbers as there are variables, zeros that are known included
+        return ca.densify(_scatter(where, self.size) @ ca.vertcat(*pieces))
 
     def _jacobian(self, local: list[tuple[ca.MX, Any]]) -> ca.MX:
         values, row, column = [], [], []

@@ -23,10 +23,6 @@ Watch = Callable[[str, int, float, float], None]
 FIRST_KNOTS, LADDER = 20, 1.5
 """Knots of the first stage, and by which factor they may grow from stage to stage."""
 
-ATTEMPTS = 8
-"""How often a solver may refuse its start. Now and then, about one time in eight on 12 knots, IPOPT
-finds an invalid number in the first derivatives where there is none, and not the next time."""
-
 FROM_AFAR = Ipopt(
     tolerance=1e-5, strategy="monotone", barrier_start=1e-2, push=1e-3, max_iterations=800
 )
@@ -77,10 +73,7 @@ class Climb:
             if self.watch is not None:
                 self.watch(words, iteration, smooth.energy(objective), violation)
 
-        for _ in range(ATTEMPTS):
-            minimum = solver.minimise(nlp, x, monitor)
-            if minimum.converged or minimum.iterations:
-                break
+        minimum = solver.minimise(nlp, x, monitor)
         self.iterations += minimum.iterations
         self.build_time += minimum.build_time
         self.solve_time += minimum.solve_time

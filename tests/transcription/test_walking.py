@@ -15,12 +15,13 @@ from ergowalk.problem import GaitProblem, JointBounds, Limits, RhythmBounds, pre
 from ergowalk.solving.stages import Effort, OrderSearch
 from ergowalk.transcription.collocation import Collocation
 from ergowalk.transcription.curves import Samples, Trajectory
+from ergowalk.transcription.edges import BAND
 from ergowalk.transcription.guess import human_guess, loaded_guess, starting_rhythm, starting_times
 from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.mesh import walking_mesh
 from ergowalk.transcription.motion import body_motion, load_sharing
 from ergowalk.transcription.phases import Instant, State
-from ergowalk.transcription.walker import BAND, Smoothing, Walker
+from ergowalk.transcription.walker import Smoothing, Walker
 from ergowalk.transcription.walking import walking_problem
 
 Array = NDArray[np.float64]

@@ -29,7 +29,7 @@ ROUNDS, MOST_ELEMENTS = 6, 250
 MESH_TOLERANCE = 0.01
 """E may differ by this share between the reported and the next finer mesh."""
 
-IMPULSIVE_LEVELS = (0.42, 0.7, 1.1)
+IMPULSIVE_LEVELS = (0.55, 0.9, 1.1)
 """Meshes on which a problem without moment-rate bound or cost is shown."""
 
 
@@ -168,17 +168,18 @@ def _show_impulses(coarse: Candidate) -> Gait:
     """
     search = coarse.search
     history: list[dict[str, Any]] = []
+    failed: list[Candidate] = []
     current, dataset = coarse, None
     for level in IMPULSIVE_LEVELS:
         result = search.remeshed(current.result, level, COARSE_POINTS)
         if not result.minimum.converged:
-            if dataset is None:
-                return _failed(Candidate(search, result), [], f"on {result.elements} elements")
-            break
+            failed.append(Candidate(search, result))
+            continue
         current = Candidate(search, result)
         dataset, _ = _dense(current, history)
         history[-1] |= _sharpness(dataset, search)
-    assert dataset is not None
+    if dataset is None:
+        return _failed(failed[-1], [], f"on {failed[-1].result.elements} elements")
     history[-1]["final"] = True
 
     def listed(key: str, form: str) -> str:

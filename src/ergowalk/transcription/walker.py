@@ -6,9 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
 from ergowalk.body import LegParameters
 from ergowalk.corridors import ANGLES, Corridor
@@ -39,6 +37,7 @@ from ergowalk.mechanics.kinematics import (
 from ergowalk.problem import JOINTS, DoubleSupport, GaitProblem
 from ergowalk.problem import constraints as c
 from ergowalk.problem.objective import eq10_joint_powers
+from ergowalk.transcription.edges import BAND, corridor_edges
 from ergowalk.transcription.phases import (
     Coordinate,
     Instant,
@@ -47,8 +46,6 @@ from ergowalk.transcription.phases import (
     TimeCurves,
     Unknown,
 )
-
-Array = NDArray[np.float64]
 
 RATE, ACCELERATION, FORCE, METRE = 3.0, 30.0, 10.0, 0.1
 """Typical sizes by which unknowns and rows are divided (rad/s, rad/s2, N/kg, m)."""
@@ -188,16 +185,7 @@ class Walker:
     @cached_property
     def corridor_curves(self) -> TimeCurves:
         """Middle and half width of every corridor of both legs as functions of time [rad]."""
-        names, table = [], []
-        for joint in ANGLES:
-            corridor = self.corridors[joint]
-            for edge, curve, width in zip(
-                BAND, (corridor.mean, corridor.sd), (1.0, corridor.width), strict=True
-            ):
-                for leg in (1, 2):
-                    names.append(f"{joint}_{leg} {edge}")
-                    table.append([width * x for x in curve.coefficients(0.5 * (leg - 1))])
-        return _fourier(tuple(names), np.array(table), self.problem.stride_time_s)
+        return corridor_edges(self.corridors, self.problem.stride_time_s)
 
     def clearance_rows(self, phase: Phase, instant: Instant, motion: BodyMotion) -> Terms:
         """(4): no point of a foot below the ground; (7): toes bend only upward."""
@@ -351,26 +339,6 @@ _WORKING_JOINTS = {
 
 SHARING = ("reaction_share", "reaction_slope", "pressure_shift", "pressure_slope")
 """Unknowns of the linear sharing (12): two lines in time and their slopes."""
-
-
-BAND = ("middle", "half width")
-"""What is asked of a corridor."""
-
-
-def _fourier(names: tuple[str, ...], table: Array, period: float) -> TimeCurves:
-    """Curves from their cosine, then sine coefficients, (n, 2 degree + 2)."""
-    rate = 2 * np.pi / period * np.arange(table.shape[1] // 2)
-    tables = [table]
-    for _ in range(2):  # (a cos + b sin)' = k (b cos - a sin)
-        a, b = np.split(tables[-1], 2, axis=1)
-        tables.append(np.concatenate([rate * b, -rate * a], axis=1))
-    stacked, column = ca.DM(np.concatenate(tables)), ca.DM(rate)
-
-    def evaluate(times: Any) -> Any:
-        turns = column @ times
-        return stacked @ ca.vertcat(ca.cos(turns), ca.sin(turns))
-
-    return TimeCurves(names, evaluate)
 
 
 def _rotation(state: State) -> Rotation:

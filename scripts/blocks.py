@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -49,3 +49,13 @@ def table(header: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
     lines = [header, tuple("---" for _ in header), *rows]
     cells = (" | ".join(cell.replace("|", "\\|") for cell in line) for line in lines)
     return "\n".join(f"| {line} |" for line in cells)
+
+
+def write_studies(studies: Mapping[str, Callable[[], str]], names: Iterable[str] = ()) -> None:
+    """Print the named studies, or all, and put each into the pages that ask for it."""
+    for name in list(names) or studies:
+        text = studies[name]()
+        print(f"{name}\n{text}", flush=True)
+        for page in pages():
+            if fill(page, "study", {name: text}):
+                print(f"wrote {page.relative_to(ROOT)}")

@@ -13,7 +13,7 @@ from functools import cache
 import numpy as np
 
 import ergowalk
-from blocks import ROOT, fill, pages, table
+from blocks import table, write_studies
 from ergowalk.solving import SplineOptions
 
 PRINTED = ergowalk.preset("berbyuk2002-rhythm")
@@ -178,14 +178,5 @@ STUDIES = {
 }
 
 
-def main() -> None:
-    for name in sys.argv[1:] or STUDIES:
-        text = STUDIES[name]()
-        print(f"{name}\n{text}", flush=True)
-        for page in pages():
-            if fill(page, "study", {name: text}):
-                print(f"wrote {page.relative_to(ROOT)}")
-
-
 if __name__ == "__main__":
-    main()
+    write_studies(STUDIES, sys.argv[1:])

@@ -10,7 +10,7 @@ import sys
 from functools import cache
 
 import ergowalk
-from blocks import ROOT, fill, pages, table
+from blocks import table, write_studies
 from ergowalk.problem import GaitProblem, JointBounds
 
 PRINTED = ergowalk.preset("berbyuk2002-rhythm")
@@ -100,14 +100,5 @@ STUDIES = {
 }
 
 
-def main() -> None:
-    for name in sys.argv[1:] or STUDIES:
-        text = STUDIES[name]()
-        print(f"{name}\n{text}", flush=True)
-        for page in pages():
-            if fill(page, "study", {name: text}):
-                print(f"wrote {page.relative_to(ROOT)}")
-
-
 if __name__ == "__main__":
-    main()
+    write_studies(STUDIES, sys.argv[1:])

@@ -385,7 +385,6 @@ def oscillator() -> PhasedProblem:
     )
 
 
-@pytest.mark.skipif(not hasattr(Collocation, "carry_multipliers"), reason="no longer there")
 def test_carried_multipliers_fit_the_finer_mesh() -> None:
     problem = oscillator()
     coarse = solved(problem, 6, 2)
@@ -402,7 +401,6 @@ def test_carried_multipliers_fit_the_finer_mesh() -> None:
     assert np.abs(rows - exact.row_multipliers)[wanted].max() < 0.35 * size
 
 
-@pytest.mark.skipif(not hasattr(Collocation, "carry_multipliers"), reason="no longer there")
 def test_multipliers_carried_to_the_same_mesh_stay_what_they_are() -> None:
     answer = solved(oscillator(), 6, 2)
     variables, rows = answer.collocation.carry_multipliers(

@@ -23,9 +23,9 @@ PRESSURE_SLACK = 1e-3
 hold it exactly: half of what the audit allows."""
 
 
-GROUND_MARGIN, CORRIDOR_MARGIN = 1e-4, 0.01
-"""Room left below clearances [m] and inside corridors [half widths] for what happens between the
-instants, where everything is asked for."""
+GROUND_MARGIN, CORRIDOR_MARGIN, CAP_MARGIN = 1e-4, 0.015, 1e-3
+"""Room left below clearances [m], inside corridors [half widths] and below the cap of the vertical
+reaction [body weights] for what happens between the instants, where everything is asked for."""
 
 
 class Asked(StrEnum):
@@ -96,7 +96,7 @@ def _load_rows(instant: Instant, leg: int, asked: Asked, limits: Limits) -> list
     if asked is Asked.PAPER:
         return [Row(label, vertical)]
     cap, friction = limits.vertical_reaction_body_weights, limits.friction_coefficient
-    highest = np.inf if cap == "off" else cap * instant.weight / unit
+    highest = np.inf if cap == "off" else (cap - CAP_MARGIN) * instant.weight / unit
     rows = [Row(label, vertical, 0.0, highest)]
     if friction != "off":
         rows += [Row("friction", x / unit) for x in c.limit_friction(force, friction)]

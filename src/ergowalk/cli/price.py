@@ -37,7 +37,7 @@ def run_price(arguments: Namespace) -> None:
         found = prices(solution)
     except InputError as error:
         raise error.located(str(path)) from None
-    folder = arguments.output or path.absolute().parent
+    folder = arguments.output or path.parent
     corridors = found.corridors
     figure = draw_prices(
         [(price.name, price.elasticity) for price in found.numbers],

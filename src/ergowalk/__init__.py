@@ -21,13 +21,14 @@ if TYPE_CHECKING:
     from ergowalk.problem import GaitProblem, preset
     from ergowalk.problem.files import read_problem
     from ergowalk.solution import Solution
-    from ergowalk.solving import solve
+    from ergowalk.solving import follow, solve
 
 _HOMES = {
     "Body": "ergowalk.body",
     "Corridor": "ergowalk.corridors",
     "GaitProblem": "ergowalk.problem",
     "Solution": "ergowalk.solution",
+    "follow": "ergowalk.solving",
     "human_gait": "ergowalk.corridors",
     "preset": "ergowalk.problem",
     "read_problem": "ergowalk.problem.files",
@@ -40,6 +41,7 @@ __all__ = [
     "Corridor",
     "GaitProblem",
     "Solution",
+    "follow",
     "human_gait",
     "preset",
     "read_problem",

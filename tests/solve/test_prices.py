@@ -38,7 +38,7 @@ class Priced:
         solver = Ipopt(tolerance=1e-8, strategy="monotone", barrier_start=1e-7, push=1e-5)
         start = Start.at(before.trajectory)
         mesh = before.collocation.mesh
-        after = search._run("again", search.phased, mesh, 3, start, solver, before)
+        after = search._run("again", search.phased, mesh, start, solver, before)
         assert after.minimum.converged
         least: float = energy_per_metre(
             after.minimum.objective * problem.body.total_mass, problem.step_length_m

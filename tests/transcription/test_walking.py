@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.mesh import walking_mesh
 from ergowalk.transcription.motion import body_motion, load_sharing
 from ergowalk.transcription.phases import Instant, State
-from ergowalk.transcription.walker import Smoothing, Walker
+from ergowalk.transcription.walker import SHARING, Smoothing, Walker
 from ergowalk.transcription.walking import walking_problem
 
 Array = NDArray[np.float64]
@@ -163,8 +163,18 @@ def test_limits_that_are_off_leave_no_bounds() -> None:
 def test_linear_sharing_adds_its_unknowns_in_double_support_only() -> None:
     linear = PROBLEM.replace(double_support="linear")
     for phase in walking_problem(linear, PhaseOrder.FLAT_FIRST).phases:
-        shared = [u.name for u in phase.controls if u.name.startswith(("reaction", "pressure"))]
-        assert bool(shared) == phase.name.endswith("toe")
+        lines = {q.name for q in phase.coordinates} & set(SHARING)
+        assert lines == (set(SHARING) if phase.name.endswith("toe") else set())
+
+
+def test_the_lines_of_linear_sharing_end_at_nothing_through_the_toe_tip() -> None:
+    """(12) at toe-off; before it the load passes between metatarsal joint and toe tip."""
+    linear = walking_problem(PROBLEM.replace(double_support="linear"), PhaseOrder.FLAT_FIRST)
+    for name in SHARING:
+        assert linear.fixed["other_toe_off", name, "value"] == 0.0
+        assert name not in linear.exchange.values()
+    shift = next(q for q in linear.phases[0].coordinates if q.name == "pressure_shift")
+    assert (shift.lower, shift.upper) == (-PROBLEM.body.leg(0).toe_length, 0.0)
 
 
 # --- the starting rhythm -----------------------------------------------------------------------
@@ -526,18 +536,35 @@ def test_a_trailing_foot_is_loaded_as_its_two_moments_say(one_fit: Fit) -> None:
         np.testing.assert_array_equal(sharing.pressure, walker.prints[1].toe_tip)
 
 
-def test_with_linear_sharing_the_force_and_its_place_are_those_of_the_controls(
+def test_with_linear_sharing_the_force_and_its_place_run_along_their_lines(
     one_fit: Fit,
 ) -> None:
     linear = Walker(one_fit.problem.replace(double_support="linear"), Smoothing())
     samples, motion, time = loaded(one_fit, 0)
-    controls = samples.control | {
-        "reaction_share": 0.3 - 0.2 * time,
-        "pressure_shift": 0.01 - 0.1 * time,
-    }
-    changed = Samples(
-        samples.value, samples.rate, samples.acceleration, controls, samples.algebraic
-    )
+    lines = {"reaction_share": 0.3 - 0.2 * time, "pressure_shift": 0.01 - 0.1 * time}
+    changed = replace(samples, value={**samples.value, **lines})
     sharing = load_sharing(linear, one_fit.phases[0], changed, motion)
     np.testing.assert_allclose(sharing.force_x, linear.mass * (0.3 - 0.2 * time))
     np.testing.assert_allclose(sharing.pressure, linear.prints[1].toe_tip + 0.01 - 0.1 * time)
+
+
+def test_with_linear_sharing_the_load_leaves_along_straight_lines() -> None:
+    """(12) for a whole gait: R_2x and x_R2 run straight to (0, toe tip) at toe-off."""
+    problem = preset("berbyuk2002-rhythm").replace(double_support="linear")
+    (order,) = problem.rhythm.orders()
+    search = OrderSearch(problem, order, Smoothing(), Effort(), None)
+    held = search.fixed_rhythm(search.fit())
+    assert held.minimum.converged
+    worst = held.collocation.programme.violations(held.minimum.x)
+    assert max(worst.values()) < 1e-6
+    curves = held.trajectory.phases[0]
+    time = np.linspace(0.0, 1.0, 41)
+    samples = curves.at(time)
+    motion = body_motion(search.walker, half_stride_phases(order)[0], samples)
+    sharing = load_sharing(search.walker, half_stride_phases(order)[0], samples, motion)
+    tip, toes = search.walker.prints[1].toe_tip, problem.body.leg(0).toe_length
+    first = sharing.force_x[0]
+    np.testing.assert_allclose(sharing.force_x, first * (1 - time), atol=1e-6 * abs(first) + 1e-6)
+    begin = sharing.pressure[0] - tip
+    np.testing.assert_allclose(sharing.pressure - tip, begin * (1 - time), atol=1e-8)
+    assert -toes - 1e-6 <= begin <= 1e-6

@@ -71,6 +71,7 @@ class Result:
             "acceptable": self.accepted,
             "status": solution.status,
             "energy_per_metre": float(solution.energy_per_metre),
+            "energy_error": solution.energy_error,
             "limits": problem.limits.sentence(),
             "cost_of_transport": cost_of_transport(solution),
             "energy_share": energy_shares(solution),
@@ -94,7 +95,9 @@ class Result:
         found, problem = self.as_dict(), self.solution.problem
         attributes, beside = self.solution.dataset.attrs, self.beside_paper()
         speed = 2 * problem.step_length_m / problem.stride_time_s
-        joules = f"{found['energy_per_metre']:.2f} J/m"
+        error = found["energy_error"]
+        bar = "" if error is None else f" (+- {error:.2f})"
+        joules = f"{found['energy_per_metre']:.2f} J/m{bar}"
         shares = [f"{joint} {share:.0%}" for joint, share in found["energy_share"].items()]
         peak = found["peak_vertical_reaction_body_weights"]
         return [

@@ -35,13 +35,17 @@ def absolute_integrals(time: Array, powers: Array) -> Array:
     for piece in smooth_pieces(time):
         t, p = time[piece], powers[piece]
         numbers = np.flatnonzero(np.all(np.isfinite(p), axis=0))
-        hull = _bernstein(t, p[:, numbers])
+        splines = _spline(t, p[:, numbers])
+        hull = _bernstein(splines)
         one_sign = np.all(hull >= 0, axis=(0, 1)) | np.all(hull <= 0, axis=(0, 1))
         simple = numbers[one_sign]
         areas = np.diff(t) @ hull[..., one_sign].mean(axis=0)  # exact for a cubic
         total[simple] += np.abs(areas)
-        for k in np.setdiff1d(np.arange(len(total)), simple):
-            total[k] += sum(_changing(t[run], p[run, k]) for run in _runs_of_numbers(p[:, k]))
+        for column in np.flatnonzero(~one_sign):
+            total[numbers[column]] += _changing(PPoly(splines.c[..., column], t))
+        for k in np.setdiff1d(np.arange(len(total)), numbers):
+            for run in _runs_of_numbers(p[:, k]):
+                total[k] += _changing(_spline(t[run], p[run, k]))
     return total
 
 
@@ -49,21 +53,20 @@ def _spline(time: Array, power: Array) -> CubicSpline:
     return CubicSpline(time, power, bc_type="not-a-knot")
 
 
-def _bernstein(time: Array, powers: Array) -> Array:
+def _bernstein(splines: CubicSpline) -> Array:
     """Bernstein coefficients of the splines, (4, intervals, k): the curves lie in their hull."""
-    cubic, square, slope, value = _spline(time, powers).c
-    h = np.diff(time)[:, None]
+    cubic, square, slope, value = splines.c
+    h = np.diff(splines.x)[:, None]
     middle = value + h * slope / 3, value + 2 * h * slope / 3 + h**2 * square / 3
     end = value + h * (slope + h * (square + h * cubic))
     return np.stack([value, *middle, end])
 
 
-def _changing(time: Array, power: Array) -> float:
-    """Integral of the absolute spline through a power that changes its sign."""
-    curve = _spline(time, power)
+def _changing(curve: PPoly) -> float:
+    """Integral of the absolute value of a power that may change its sign."""
     integral = curve.antiderivative()
-    roots = PPoly.roots(curve, extrapolate=False) if np.ptp(power) > 0 else np.array([])
-    cuts = np.concatenate([[time[0]], np.sort(roots[np.isfinite(roots)]), [time[-1]]])
+    roots = PPoly.roots(curve, extrapolate=False) if curve.c.any() else np.array([])
+    cuts = np.concatenate([[curve.x[0]], np.sort(roots[np.isfinite(roots)]), [curve.x[-1]]])
     return float(np.sum(np.abs(np.diff(integral(cuts)))))
 
 

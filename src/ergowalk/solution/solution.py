@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     from ergowalk.audit import AuditReport
 
 
+MESH_SHARE = 0.006
+"""Least share of E that the error bar takes for the mesh."""
+
+
 @dataclass(frozen=True, eq=False)
 class Solution:
     """A gait: every curve of the stride, and how it was found.
@@ -48,6 +52,22 @@ class Solution:
     def energy_per_metre(self) -> float:
         """E of (10) [J/m] on the dense grid, as stored."""
         return float(self.dataset.attrs["energy_per_metre"])
+
+    @property
+    def energy_error(self) -> float | None:
+        """How far E may be from that of ever finer meshes [J/m]; None where that is not known.
+
+        Twice what the check on a finer mesh changes, and at least :data:`MESH_SHARE` of E: what
+        halving every element twice has shown, in "How sure is this number?". Of a gait on
+        splines E depends on the knots, which no check moves.
+        """
+        if self.dataset.attrs.get("method") != "collocation":
+            return None
+        found = {k: e for e in self.mesh_history for k in ("final", "finer") if e.get(k)}
+        if len(found) < 2 or not found["finer"]["converged"]:
+            return None
+        change = found["finer"]["energy_per_metre"] - found["final"]["energy_per_metre"]
+        return float(max(2 * abs(change), MESH_SHARE * self.energy_per_metre))
 
     @property
     def rhythm(self) -> Rhythm:

@@ -28,7 +28,8 @@ Monitor = Callable[[int, float, float], None]
 class Ipopt:
     """IPOPT as a frozen choice of options.
 
-    ``push`` is how far a start on a bound is moved inside; a small one keeps a good start.
+    ``push`` is how far a start on a bound is moved inside; a small one keeps a good start. With
+    ``barrier_end`` the solver stops at the minimum of that barrier, inside of all bounds.
     """
 
     tolerance: float = 1e-7
@@ -36,6 +37,7 @@ class Ipopt:
     max_iterations: int = 400
     strategy: str = "adaptive"
     barrier_start: float | None = None
+    barrier_end: float = 0.0
     push: float = 1e-2
     extra: Mapping[str, object] = field(default_factory=dict)
 
@@ -116,6 +118,7 @@ class Ipopt:
             "acceptable_iter": 15,
             "max_iter": self.max_iterations,
             "mu_strategy": self.strategy,
+            "mu_target": self.barrier_end,
             "nlp_scaling_method": "none",
             "linear_solver": "mumps",
             "print_level": 0,

@@ -1,6 +1,7 @@
 """The one verb: a gait problem becomes a solution."""
 
+from ergowalk.solving.path import Waypoint, follow
 from ergowalk.solving.spline_options import SplineOptions
 from ergowalk.solving.verb import solve
 
-__all__ = ["SplineOptions", "solve"]
+__all__ = ["SplineOptions", "Waypoint", "follow", "solve"]

@@ -7,26 +7,31 @@ from typing import Any
 
 import xarray as xr
 
+from ergowalk.errors import GaitFileError
 from ergowalk.problem import GaitProblem
 from ergowalk.problem.objective import energy_per_metre
 from ergowalk.solution import Solution
 from ergowalk.solution.progress import Report
 from ergowalk.solving.answer import dense_energy, dense_gait, describe, judged, rhythm_of
-from ergowalk.solving.memory import remember
-from ergowalk.solving.stages import COARSE_POINTS, Effort, OrderSearch, StageResult, Start
+from ergowalk.solving.memory import recall, remember
+from ergowalk.solving.stages import (
+    COARSE,
+    SEARCH_BARRIER,
+    Effort,
+    OrderSearch,
+    StageResult,
+    Start,
+)
 from ergowalk.solving.start import StartingGait
 from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.mesh import cut, finer
 from ergowalk.transcription.perturbation import Perturbation
 from ergowalk.transcription.walker import Smoothing
 
-COARSE = 0.42
-"""Mesh level of the search."""
-
 ROUNDS, MOST_ELEMENTS = 6, 250
 """How often elements are cut whose errors are too large, and how many there may be."""
 
-MESH_TOLERANCE = 0.01
+MESH_TOLERANCE = 0.005
 """E may differ by this share between the reported and the next finer mesh."""
 
 IMPULSIVE_LEVELS = (0.55, 0.9, 1.1)
@@ -51,9 +56,11 @@ def solve_collocation(
         OrderSearch(problem, order, weights, effort, progress, store)
         for order in problem.rhythm.orders()
     ]
-    begun = None if start is None else _begin(searches, StartingGait(start))
-    candidates = [begun] if begun else [_coarse(s, perturbation) for s in searches]
+    begun = None if start is None else _begin(searches, start)
+    candidates = [begun] if begun else [_searched(s, perturbation) for s in searches]
     best = min(candidates, key=lambda c: (not c.result.minimum.converged, c.result.energy_at_nodes))
+    if begun is None and best.result.minimum.converged:
+        best = replace(best, result=best.search.remeshed(best.result, COARSE, SEARCH_BARRIER))
     gait = _show_impulses(best) if not problem.limits.bounds_moment_rate else _refine(best)
     if start is not None and begun is None:
         words = "; the start could not be used, so the search began from the human means"
@@ -80,21 +87,42 @@ class Gait:
     settled: bool
 
 
-def _coarse(search: OrderSearch, perturbation: Perturbation | None) -> Candidate:
-    held = search.fixed_rhythm(search.fit(), COARSE, perturbation)
-    if not held.minimum.converged:
+def _searched(search: OrderSearch, perturbation: Perturbation | None) -> Candidate:
+    """The gait of one phase order on few elements."""
+    held = search.fixed_rhythm(search.fit(), perturbation)
+    if not held.minimum.converged or search.problem.rhythm.fixed:
         return Candidate(search, held)
     return Candidate(search, search.free_rhythm(held, perturbation))
 
 
-def _begin(searches: list[OrderSearch], start: StartingGait) -> Candidate | None:
-    """The coarse stage from a solved gait; None where it cannot begin or does not converge."""
+def _begin(searches: list[OrderSearch], start: Solution) -> Candidate | None:
+    """The first stage from a solved gait; None where it cannot begin or does not converge.
+
+    A gait that remembers its point and multipliers is continued on its own mesh: what a small
+    change of the problem takes. Any other is a guess on the coarse mesh.
+    """
+    begun = StartingGait(start)
     for search in searches:
-        times = start.times(search.problem)
-        if search.order is start.order and times is not None:
-            begun = search.started(Start(start.guess(search.problem), times), COARSE)
-            return Candidate(search, begun) if begun.minimum.converged else None
+        times = begun.times(search.problem)
+        if search.order is begun.order and times is not None:
+            before = _remembered(start, search)
+            if before is not None:
+                result = search.continued(before, times)
+                if result.minimum.converged:
+                    return Candidate(search, result)
+            result = search.started(Start(begun.guess(search.problem), times))
+            return Candidate(search, result) if result.minimum.converged else None
     return None
+
+
+def _remembered(start: Solution, search: OrderSearch) -> StageResult | None:
+    """The stage that a gait came from, if a search can continue from its multipliers."""
+    try:
+        old, before = recall(start)
+    except GaitFileError:
+        return None
+    same = old.order is search.order and search.fits(before)
+    return before if same else None
 
 
 def _record(result: StageResult, energy: float, **flags: bool) -> dict[str, Any]:
@@ -125,7 +153,11 @@ def _dense(
 
 
 def _refine(coarse: Candidate) -> Gait:
-    """The reported gait and the check of its mesh."""
+    """The reported gait and the check of its mesh.
+
+    Elements are cut until none has too large an error, then until E stands still: if it moves by
+    more than :data:`MESH_TOLERANCE` on the mesh of the check, that mesh is the next to be checked.
+    """
     search, final = coarse.search, coarse
     history: list[dict[str, Any]] = []
     if not coarse.result.minimum.converged:
@@ -141,17 +173,26 @@ def _refine(coarse: Candidate) -> Gait:
         if not final.result.minimum.converged:
             return _failed(final, history, f"on {final.result.elements} elements")
         residuals = search.residuals(final.result)
-    dataset, reported = _dense(final, history, final=True)
-    mesh = finer(final.result.collocation.mesh, residuals.errors)
-    check = Candidate(search, search.refined(final.result, mesh, 1.0))
-    _, confirmed = _dense(check, history, finer=True)
-    if not check.result.minimum.converged:
+    dataset, reported = _dense(final, history)
+    while True:
+        mesh = finer(final.result.collocation.mesh, residuals.errors)
+        check = Candidate(search, search.refined(final.result, mesh, 1.0))
+        checked, confirmed = _dense(check, history)
+        change = confirmed / reported - 1
+        converged = check.result.minimum.converged
+        if not converged or abs(change) <= MESH_TOLERANCE:
+            break
+        if check.result.elements > MOST_ELEMENTS:
+            break
+        final, dataset, reported = check, checked, confirmed
+        residuals = search.residuals(final.result)
+    history[-2]["final"], history[-1]["finer"] = True, True
+    if not converged:
         status = (
             f"converged on {final.result.elements} elements, but the check on "
             f"{check.result.elements} did not: {check.result.minimum.message}"
         )
         return Gait(final, dataset, history, status, settled=False)
-    change = confirmed / reported - 1
     settled = abs(change) <= MESH_TOLERANCE
     status = (
         f"{'converged' if settled else 'not converged with the mesh'}: "
@@ -171,7 +212,7 @@ def _show_impulses(coarse: Candidate) -> Gait:
     failed: list[Candidate] = []
     current, dataset = coarse, None
     for level in IMPULSIVE_LEVELS:
-        result = search.remeshed(current.result, level, COARSE_POINTS)
+        result = search.remeshed(current.result, level, 1e-3)
         if not result.minimum.converged:
             failed.append(Candidate(search, result))
             continue

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ergowalk.corridors import ANGLES
-from ergowalk.errors import ErgowalkError
+from ergowalk.errors import ErgowalkError, ProblemError
 from ergowalk.problem import GaitProblem
 from ergowalk.problem.objective import energy_per_metre
 from ergowalk.solution import Solution
@@ -102,6 +102,23 @@ def prices(solution: Solution) -> Prices:
     return Prices(solution.energy_per_metre, tuple(found), corridor_prices(search, result))
 
 
+def price_of(solution: Solution, name: str) -> float:
+    """Derivative of the least objective [J/m] with respect to the number at a path.
+
+    Raises
+    ------
+    GaitFileError
+        As :func:`prices`.
+    ProblemError
+        If the problem has no such number, or does not allow it to be changed alone.
+    """
+    value = given_number(solution.problem, name)
+    slope = _Optimum(*recall(solution)).slope(name, value)
+    if slope is None:
+        raise ProblemError("cannot be changed alone", "change another", field="name", value=name)
+    return slope
+
+
 def with_fixed_multipliers(result: StageResult) -> Minimum:
     """The minimum with the multipliers of fixed variables, which the solver never sees.
 
@@ -124,6 +141,22 @@ def given_numbers(problem: GaitProblem) -> Iterator[tuple[str, float]]:
     yield "corridors.width_sd", problem.corridors.width_sd
     for table in ("limits", "body"):
         yield from _numbers(getattr(problem, table), table)
+
+
+def given_number(problem: GaitProblem, name: str) -> float:
+    """The number of the problem at a path.
+
+    Raises
+    ------
+    ProblemError
+        If it has none there.
+    """
+    numbers = dict(given_numbers(problem))
+    if name not in numbers:
+        raise ProblemError(
+            "no such number", f"use one of {', '.join(numbers)}", field="name", value=name
+        )
+    return numbers[name]
 
 
 def _numbers(table: Value, path: str) -> Iterator[tuple[str, float]]:

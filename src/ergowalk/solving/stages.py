@@ -28,8 +28,15 @@ from ergowalk.transcription.residuals import Residuals, mesh_residuals
 from ergowalk.transcription.walker import Smoothing, Walker
 from ergowalk.transcription.walking import kinematic_problem, walking_problem
 
-COARSE_POINTS, FINE_POINTS = 2, 3
-"""Gauss points per element while searching, and for the reported gait."""
+POINTS = 3
+"""Gauss points per element."""
+
+SEARCH, COARSE = 0.2, 0.42
+"""Mesh levels: while phase orders are compared, and of the mesh that is cut from then on."""
+
+SEARCH_BARRIER = 1e-4
+"""Barrier at which the search changes stages: well below it the next one would only start on its
+bounds, far above it the curves are not yet those of a gait."""
 
 LARGE_ERROR = 5.0
 """Error of a mesh from which the solver starts further from the bounds."""
@@ -108,38 +115,61 @@ class OrderSearch:
         times = starting_times(self.problem, starting_rhythm(self.problem, self.order))
         phased = with_times(kinematic_problem(self.problem, self.order), times)
         start = Start(human_guess(self.walker, self.order, times), times)
-        return self._run("fit to human means", phased, self._mesh(times, 0.4), 2, start).trajectory
+        mesh = self._mesh(times, COARSE)
+        return self._run("fit to human means", phased, mesh, start, points=2).trajectory
 
     def fixed_rhythm(
-        self, fit: Trajectory, level: float, perturbation: Perturbation | None = None
+        self, fit: Trajectory, perturbation: Perturbation | None = None
     ) -> StageResult:
-        """First dynamics: from the fit, disturbed if asked for, rhythm held."""
+        """First dynamics: from the fit, disturbed if asked for, rhythm held.
+
+        It ends with the barrier at :data:`SEARCH_BARRIER`: a gait, not yet the cheapest.
+        """
         guess = loaded_guess(self.walker, self.order, fit)
         if perturbation is not None:
             guess = perturbation.curves(fit, guess, self.order, self.problem.stride_time_s)
         start = Start(guess, fit.times)
-        phased, mesh = with_times(self.phased, fit.times), self._mesh(fit.times, level)
-        solver = Ipopt(tolerance=1e-4)
-        return self._run("rhythm held", phased, mesh, COARSE_POINTS, start, solver)
+        phased, mesh = with_times(self.phased, fit.times), self._mesh(fit.times, SEARCH)
+        solver = Ipopt(tolerance=1e-3, barrier_end=SEARCH_BARRIER)
+        return self._run("rhythm held", phased, mesh, start, solver)
 
-    def started(self, start: Start, level: float) -> StageResult:
+    def started(self, start: Start) -> StageResult:
         """First dynamics from the curves of a solved gait, switching times free at once."""
         solver = Ipopt(tolerance=1e-4, strategy="monotone", barrier_start=1e-3, push=1e-4)
-        mesh = self._mesh(start.times, level)
-        return self._run("from a gait", self.phased, mesh, FINE_POINTS, start, solver)
+        mesh = self._mesh(start.times, COARSE)
+        return self._run("from a gait", self.phased, mesh, start, solver)
+
+    def fits(self, before: StageResult) -> bool:
+        """Whether a stage of another problem has the same unknowns and rows, so that its
+        multipliers mean the same here."""
+        kernels = Collocation(
+            self.phased, before.collocation.mesh, before.points, self.store
+        ).kernels
+        pairs = zip(kernels, before.collocation.kernels, strict=True)
+        return all(
+            here.labels == there.labels
+            and here.kernel.variables.numel() == there.kernel.variables.numel()
+            for here, there in pairs
+        )
+
+    def continued(self, before: StageResult, times: Mapping[str, float]) -> StageResult:
+        """The gait of a neighbouring problem, from its point and multipliers, on its mesh."""
+        start = Start(before.trajectory.as_guess(), times)
+        solver = _warm(1e-6, 1e-6)
+        mesh = before.collocation.mesh
+        return self._run("from a gait", self.phased, mesh, start, solver, before)
 
     def free_rhythm(
         self, held: StageResult, perturbation: Perturbation | None = None
     ) -> StageResult:
-        """All switching times as free as the problem lets them be, parabolic moments."""
-        start, solver = Start.at(held.trajectory), Ipopt(tolerance=1e-5)
-        if perturbation is not None and not self.problem.rhythm.fixed:
+        """All switching times as free as the problem lets them be."""
+        start, mesh = Start.at(held.trajectory), held.collocation.mesh
+        if perturbation is not None:
             rhythm = starting_rhythm(self.problem, self.order)
             moved = perturbation.rhythm(self.problem, self.order, rhythm)
             start = Start(start.guess, starting_times(self.problem, moved))
-        mesh = held.collocation.mesh
-        stage = "parabolic moments" if self.problem.rhythm.fixed else "rhythm free"
-        return self._run(stage, self.phased, mesh, FINE_POINTS, start, solver)
+        solver = _warm(1e-4, SEARCH_BARRIER)
+        return self._run("rhythm free", self.phased, mesh, start, solver, held)
 
     def refined(self, start: StageResult, mesh: Mesh, error: float) -> StageResult:
         """The same gait on a mesh in which elements have been cut.
@@ -148,17 +178,14 @@ class OrderSearch:
         bounds the smaller the ``error`` of the mesh before was (as a multiple of what is allowed).
         """
         barrier = 1e-5 if error > LARGE_ERROR else 1e-6
-        solver = Ipopt(tolerance=1e-6, strategy="monotone", barrier_start=barrier, push=1e-4)
-        return self._run(
-            "finer mesh", self.phased, mesh, start.points, Start.at(start.trajectory), solver, start
-        )
+        at = Start.at(start.trajectory)
+        return self._run("finer mesh", self.phased, mesh, at, _warm(1e-6, barrier), start)
 
-    def remeshed(self, start: StageResult, level: float, points: int) -> StageResult:
-        """The same gait on the graded mesh of a level."""
-        solver = Ipopt(tolerance=1e-6, strategy="monotone", barrier_start=1e-3, push=1e-4)
+    def remeshed(self, start: StageResult, level: float, barrier: float) -> StageResult:
+        """The same gait on the graded mesh of a level, multipliers carried."""
         curves = start.trajectory
         mesh, stage = self._mesh(curves.times, level), f"mesh level {level:g}"
-        return self._run(stage, self.phased, mesh, points, Start.at(curves), solver)
+        return self._run(stage, self.phased, mesh, Start.at(curves), _warm(1e-5, barrier), start)
 
     def residuals(self, result: StageResult) -> Residuals:
         """What the mesh leaves undone between its nodes."""
@@ -172,10 +199,10 @@ class OrderSearch:
         stage: str,
         phased: PhasedProblem,
         mesh: Mesh,
-        points: int,
         start: Start,
         solver: Ipopt | None = None,
         before: StageResult | None = None,
+        points: int = POINTS,
     ) -> StageResult:
         began = time.process_time()
         collocation = Collocation(phased, mesh, points, self.store)
@@ -210,6 +237,11 @@ class OrderSearch:
             report(Progress(words, iteration, self._energy(objective), violation, elapsed))
 
         return monitor
+
+
+def _warm(tolerance: float, barrier: float) -> Ipopt:
+    """A solver that starts close to the solution and keeps its barrier falling from ``barrier``."""
+    return Ipopt(tolerance=tolerance, strategy="monotone", barrier_start=barrier, push=1e-4)
 
 
 def with_times(phased: PhasedProblem, times: Mapping[str, float]) -> PhasedProblem:

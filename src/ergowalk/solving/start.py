@@ -19,6 +19,7 @@ from ergowalk.problem import JOINTS, GaitProblem
 from ergowalk.quantities import SEGMENTS
 from ergowalk.solution import Solution
 from ergowalk.transcription.curves import Guess, Samples
+from ergowalk.transcription.walker import SHARING
 
 Array = NDArray[np.float64]
 
@@ -101,13 +102,9 @@ class StartingGait:
             for name in ("foot_2", "toes_2"):
                 algebraic |= {name: value[name], f"{name}_rate": rate[name]}
             if phases[i].double_support:
-                share, moved, lasts = force[part, 1, 0], shift[part], (end - start) / slower
-                control |= {
-                    "reaction_share": curve(force[:, 1, 0]),
-                    "reaction_slope": 0 * at + (share[-1] - share[0]) / lasts,
-                    "pressure_shift": curve(shift),
-                    "pressure_slope": 0 * at + (moved[-1] - moved[0]) / lasts,
-                }
+                for name, line in zip(SHARING, (shift, force[:, 1, 0]), strict=True):
+                    value[name], acceleration[name] = curve(line), 0 * at
+                    rate[name] = 0 * at + (line[part][-1] - line[part][0]) / (end - start)
             return Samples(value, rate, acceleration, control, algebraic)
 
         return guess

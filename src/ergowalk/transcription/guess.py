@@ -14,7 +14,7 @@ from ergowalk.mechanics.foot import ankle_moment_under, metatarsal_moment_under
 from ergowalk.problem import GaitProblem
 from ergowalk.transcription.curves import Guess, Samples, Trajectory
 from ergowalk.transcription.motion import body_motion
-from ergowalk.transcription.walker import Walker
+from ergowalk.transcription.walker import SHARING, Walker
 
 Array = NDArray[np.float64]
 
@@ -149,12 +149,9 @@ def loaded_guess(walker: Walker, order: PhaseOrder, fit: Trajectory) -> Guess:
         w_1 = first[2] + y_a * one[0] + (x_m - x_a) * one[1]
         moments = [*first, w_1, *second, w_2]
         control = {n: m / mass for n, m in zip(_CONTROLS, moments, strict=True)}
-        control |= {
-            "reaction_share": two[0] / mass,
-            "reaction_slope": 0 * time,
-            "pressure_shift": 0 * time,
-            "pressure_slope": 0 * time,
-        }
+        rest = dict.fromkeys(SHARING, 0 * time)
+        value = {**samples.value, **rest, "reaction_share": two[0] / mass}
+        rate, acceleration = {**samples.rate, **rest}, {**samples.acceleration, **rest}
         algebraic = {
             "reaction_x_1": one[0] / mass,
             "reaction_y_1": one[1] / mass,
@@ -165,7 +162,7 @@ def loaded_guess(walker: Walker, order: PhaseOrder, fit: Trajectory) -> Guess:
             "foot_2_rate": motion.legs[1].foot.rate,
             "toes_2_rate": motion.legs[1].toes.rate,
         }
-        return Samples(samples.value, samples.rate, samples.acceleration, control, algebraic)
+        return Samples(value, rate, acceleration, control, algebraic)
 
     return guess
 

@@ -51,14 +51,14 @@ def load_sharing(walker: Walker, phase: Phase, samples: Samples, motion: BodyMot
     zero = np.zeros_like(motion.trunk.angle)
     if phase.legs[1] is not Contact.TOE:
         return Sharing(zero, zero, zero)
-    pressure = walker.prints[1].toe_tip + samples.control.get("pressure_shift", zero)
+    pressure = walker.prints[1].toe_tip + samples.value.get("pressure_shift", zero)
     points = walker.points(motion)[1]
     ankle, metatarsal = (
         walker.mass * samples.control[name] for name in ("ankle_2", "metatarsal_2")
     )
     force_x, force_y = reaction_from_moments(points, ankle, metatarsal, pressure)
     if walker.linear_sharing:
-        force_x = walker.mass * samples.control["reaction_share"]
+        force_x = walker.mass * samples.value["reaction_share"]
     return Sharing(force_x, force_y, pressure)
 
 

@@ -12,6 +12,7 @@ from ergowalk.gait.rhythm import PhaseOrder, Rhythm, half_stride_phases
 from ergowalk.problem import GaitProblem
 from ergowalk.transcription.curves import Guess, Samples, Trajectory
 from ergowalk.transcription.guess import rhythm_with_room
+from ergowalk.transcription.walker import SHARING
 
 Array = NDArray[np.float64]
 
@@ -50,7 +51,9 @@ class Perturbation:
             def kind(curves: Mapping[str, Array], derivative: int) -> dict[str, Array]:
                 scale = stride**-derivative
                 return {
-                    name: curve + scale * _wave(waves, name, s, derivative)
+                    name: curve
+                    if name in SHARING
+                    else curve + scale * _wave(waves, name, s, derivative)
                     for name, curve in curves.items()
                 }
 

@@ -56,12 +56,16 @@ class GaussScheme:
         return basis
 
     @cached_property
-    def _integrated(self) -> list[list[Polynomial]]:
-        """The basis, its integrals from 0, and theirs."""
+    def _integrated(self) -> list[Array]:
+        """Coefficients (degree + 1, m) of the basis, of its integrals from 0, and of theirs."""
         once = [b.integ() for b in self._basis]
-        return [self._basis, once, [b.integ() for b in once]]
+        orders = (self._basis, once, [b.integ() for b in once])
+        return [np.stack([b.coef for b in order], axis=-1) for order in orders]
 
     def _evaluate(self, integrations: int, s: ArrayLike) -> Array:
         s = np.atleast_1d(np.asarray(s, dtype=float))
-        columns = [b(s) * np.ones_like(s) for b in self._integrated[integrations]]
-        return np.stack(columns, axis=-1)
+        coefficients = self._integrated[integrations]
+        powers = np.vander(s, len(coefficients), increasing=True)
+        # summed term by term: a matrix product may round one instant unlike many
+        found: Array = (powers[:, :, None] * coefficients).sum(axis=1)
+        return found

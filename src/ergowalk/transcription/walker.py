@@ -85,13 +85,21 @@ class Walker:
     # --- unknowns -------------------------------------------------------------------------
 
     def coordinates(self, phase: Phase) -> tuple[Coordinate, ...]:
-        """Angles of this phase; a flat foot has none, a foot on its toe tip follows the ankle."""
+        """Angles of this phase; a flat foot has none, a foot on its toe tip follows the ankle.
+
+        The two lines of (12) are coordinates too, of no acceleration.
+        """
         names = ["trunk", "thigh_1", "shank_1", "thigh_2", "shank_2"]
         if phase.legs[0] is not Contact.FLAT:
             names.append("foot_1")
         if phase.legs[1] is Contact.SWING:
             names.append("foot_2")
-        return tuple(Coordinate(n, rate_scale=RATE, acceleration_scale=ACCELERATION) for n in names)
+        angles = [Coordinate(n, rate_scale=RATE, acceleration_scale=ACCELERATION) for n in names]
+        if phase.legs[1] is Contact.TOE and self.linear_sharing:
+            toes = -self.leg.toe_length  # the load passes between metatarsal joint and toe tip
+            angles.append(Coordinate("pressure_shift", toes, 0.0))
+            angles.append(Coordinate("reaction_share", rate_scale=FORCE))
+        return tuple(angles)
 
     def controls(self, phase: Phase) -> tuple[Unknown, ...]:
         """Joint moments per kg that can do work, or carry load over the toes."""
@@ -102,11 +110,7 @@ class Walker:
             names += ["ankle_2", "metatarsal_2"]
         limits = self.problem.limits.moment_nm_per_kg
         bounds = {n: limits.of(n[:-2]) or np.inf for n in names}
-        unknowns = [Unknown(n, -bounds[n], bounds[n]) for n in names]
-        if phase.legs[1] is Contact.TOE and self.linear_sharing:
-            toes = {"pressure_shift": (-self.leg.toe_length, 0.0)}  # between joint and tip
-            unknowns += [Unknown(n, *toes.get(n, (-np.inf, np.inf))) for n in SHARING]
-        return tuple(unknowns)
+        return tuple(Unknown(n, -bounds[n], bounds[n]) for n in names)
 
     def algebraics(self, phase: Phase) -> tuple[Unknown, ...]:
         """Ground reactions per kg, and the trailing foot while it stands on its toe tip."""
@@ -219,7 +223,9 @@ class Walker:
         terms, limits = Terms(), self.algebraics(phase)
         _, trailing = self.reactions(instant)
         if phase.legs == (Contact.HEEL, Contact.TOE):
-            pressure = self.prints[1].toe_tip + instant.controls.get("pressure_shift", 0.0)
+            pressure = self.prints[1].toe_tip
+            if self.linear_sharing:
+                pressure = pressure + instant.coordinates["pressure_shift"].value
             two = (self.mass * trailing[0], self.mass * trailing[1])
             share = vertical_share(self.problem.body, motion, two, pressure)
             trailing = (trailing[0], share / self.mass)
@@ -281,14 +287,12 @@ class Walker:
         self, terms: Terms, instant: Instant, points: LegPoints, moments: LegMoments, reaction: Any
     ) -> None:
         """Trailing foot: load through the toe tip, or through the moving point of (12)."""
-        u, slope = instant.controls, instant.control_slopes
         x_r = self.prints[1].toe_tip
         if self.linear_sharing:
-            x_r = x_r + u["pressure_shift"]
-            terms.equal("sharing (12)", (reaction[0] - u["reaction_share"]) / FORCE)
-            terms.equal("sharing (12)", slope["pressure_shift"] - u["pressure_slope"])
-            terms.equal("sharing (12)", slope["reaction_share"] - u["reaction_slope"])
-            terms.equal("sharing (12)", slope["pressure_slope"], slope["reaction_slope"])
+            shift, share = (instant.coordinates[name] for name in SHARING)
+            x_r = x_r + shift.value
+            terms.equal("sharing (12)", (reaction[0] - share.value) / FORCE)
+            terms.equal("sharing (12)", shift.acceleration, share.acceleration)
         terms.equal("foot (1)", foot_balance(points, moments.ankle, moments.metatarsal, reaction))
         terms.equal("foot (1)", toe_balance(points, moments.metatarsal, reaction, x_r))
         self.toe_contact_rows(terms, points)
@@ -337,8 +341,8 @@ _WORKING_JOINTS = {
 }
 """How many of hip, knee, ankle, metatarsal joint can do work in each contact."""
 
-SHARING = ("reaction_share", "reaction_slope", "pressure_shift", "pressure_slope")
-"""Unknowns of the linear sharing (12): two lines in time and their slopes."""
+SHARING = ("pressure_shift", "reaction_share")
+"""The two lines of (12): from the toe tip to the centre of pressure [m], and R_2x per kg."""
 
 
 def _rotation(state: State) -> Rotation:

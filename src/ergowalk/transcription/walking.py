@@ -90,7 +90,7 @@ def kinematic_problem(problem: GaitProblem, order: PhaseOrder) -> PhasedProblem:
             "fit_" + phase.name,
             phase.start,
             phase.end,
-            walker.coordinates(phase),
+            tuple(q for q in walker.coordinates(phase) if q.name not in SHARING),
             (),
             algebraics,
             1.0,
@@ -124,7 +124,7 @@ def _chain(
         if with_loads or key[2] != "control"
     }
     if walker.linear_sharing and with_loads:
-        fixed |= {("other_toe_off", n, "control"): 0.0 for n in SHARING[::2]}
+        fixed |= {("other_toe_off", n, "value"): 0.0 for n in SHARING}
     at_toe_off = next(p.legs[0] for p in phases if p.end == "other_toe_off")
     limits = problem.limits
     rates = {f"{j}_{i}": limits.moment_rate_nm_per_kg_s.of(j) for j in JOINTS for i in (1, 2)}

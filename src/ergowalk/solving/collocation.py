@@ -16,7 +16,7 @@ from ergowalk.solving.answer import dense_energy, dense_gait, describe, judged, 
 from ergowalk.solving.memory import recall, remember
 from ergowalk.solving.stages import (
     COARSE,
-    SEARCH_BARRIER,
+    POINTS,
     Effort,
     OrderSearch,
     StageResult,
@@ -59,9 +59,12 @@ def solve_collocation(
     begun = None if start is None else _begin(searches, start)
     candidates = [begun] if begun else [_searched(s, perturbation) for s in searches]
     best = min(candidates, key=lambda c: (not c.result.minimum.converged, c.result.energy_at_nodes))
-    if begun is None and best.result.minimum.converged:
-        best = replace(best, result=best.search.remeshed(best.result, COARSE, SEARCH_BARRIER))
-    gait = _show_impulses(best) if not problem.limits.bounds_moment_rate else _refine(best)
+    if not problem.limits.bounds_moment_rate:
+        gait = _show_impulses(best)
+    else:
+        if begun is None and best.result.minimum.converged:
+            best = replace(best, result=best.search.remeshed(best.result, COARSE))
+        gait = _refine(best)
     if start is not None and begun is None:
         words = "; the start could not be used, so the search began from the human means"
         gait = replace(gait, status=gait.status + words)
@@ -121,7 +124,7 @@ def _remembered(start: Solution, search: OrderSearch) -> StageResult | None:
         old, before = recall(start)
     except GaitFileError:
         return None
-    same = old.order is search.order and search.fits(before)
+    same = old.order is search.order and before.points == POINTS and search.fits(before)
     return before if same else None
 
 
@@ -212,7 +215,7 @@ def _show_impulses(coarse: Candidate) -> Gait:
     failed: list[Candidate] = []
     current, dataset = coarse, None
     for level in IMPULSIVE_LEVELS:
-        result = search.remeshed(current.result, level, 1e-3)
+        result = search.impulsive(current.result, level)
         if not result.minimum.converged:
             failed.append(Candidate(search, result))
             continue

@@ -181,11 +181,21 @@ class OrderSearch:
         at = Start.at(start.trajectory)
         return self._run("finer mesh", self.phased, mesh, at, _warm(1e-6, barrier), start)
 
-    def remeshed(self, start: StageResult, level: float, barrier: float) -> StageResult:
+    def remeshed(self, start: StageResult, level: float) -> StageResult:
         """The same gait on the graded mesh of a level, multipliers carried."""
-        curves = start.trajectory
+        curves, solver = start.trajectory, _warm(1e-5, SEARCH_BARRIER)
         mesh, stage = self._mesh(curves.times, level), f"mesh level {level:g}"
-        return self._run(stage, self.phased, mesh, Start.at(curves), _warm(1e-5, barrier), start)
+        return self._run(stage, self.phased, mesh, Start.at(curves), solver, start)
+
+    def impulsive(self, start: StageResult, level: float) -> StageResult:
+        """The gait of a problem without minimiser on the graded mesh of a level.
+
+        Two Gauss points and moments that are lines: the sharper a peak may be, the longer the
+        search for it takes.
+        """
+        curves, solver = start.trajectory, _warm(1e-6, 1e-3)
+        mesh, stage = self._mesh(curves.times, level), f"mesh level {level:g}"
+        return self._run(stage, self.phased, mesh, Start.at(curves), solver, points=2)
 
     def residuals(self, result: StageResult) -> Residuals:
         """What the mesh leaves undone between its nodes."""

@@ -1,0 +1,134 @@
+"""Tables of "How sure is this number?": ``python scripts/certainty.py [NAME ...]``.
+
+Meshes halved everywhere, with limits and without; a path of gaits against its prices; searches from
+seeded starts. Minutes each; the starts take hours of CPU time (``STARTS``).
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from functools import cache
+
+import numpy as np
+
+import ergowalk
+from blocks import table, write_studies
+from ergowalk.solving.answer import dense_energy, dense_gait
+from ergowalk.solving.memory import recall
+from ergowalk.solving.stages import OrderSearch, StageResult
+from ergowalk.transcription.mesh import finer
+
+HALVINGS = 2
+STARTS, SEED = int(os.environ.get("STARTS", "100")), 1
+
+
+@cache
+def solution(name: str) -> ergowalk.Solution:
+    """A solved preset; says so on standard error."""
+    found = ergowalk.solve(ergowalk.preset(name))
+    print(f"{name}: {found.status}", file=sys.stderr, flush=True)
+    return found
+
+
+def halved() -> str:
+    """E when every element is halved, and halved again, beside the error bar of the answer."""
+    rows = []
+    for name in ("berbyuk2002", "berbyuk2002-rhythm", "winter-slow", "winter-fast"):
+        found = solution(name)
+        search, stage = recall(found)
+        cells = [f"{found.energy_per_metre:.2f} on {stage.elements}"]
+        for _ in range(HALVINGS):
+            stage = _halved(search, stage)
+            energy = _energy(search, stage)
+            change = 100 * (energy / found.energy_per_metre - 1)
+            mark = "" if stage.minimum.converged else ", not converged"
+            cells.append(f"{energy:.2f} ({change:+.2f} %) on {stage.elements}{mark}")
+        error = found.energy_error
+        bar = "-" if error is None else f"{error:.2f} ({error / found.energy_per_metre:.2%})"
+        rows.append((f"`{name}`", *cells, bar))
+    header = ("preset", "E [J/m], elements", "all halved", "all halved twice", "error bar [J/m]")
+    return table(header, rows)
+
+
+def _halved(search: OrderSearch, stage: StageResult) -> StageResult:
+    """The same gait with every element halved."""
+    errors = [np.ones(len(edges) - 1) for edges in stage.collocation.mesh]
+    return search.refined(stage, finer(stage.collocation.mesh, errors, share=1.0), 1.0)
+
+
+def _energy(search: OrderSearch, stage: StageResult) -> float:
+    dataset = dense_gait(search.walker, search.order, stage.trajectory)
+    return dense_energy(dataset, search.problem.step_length_m)
+
+
+def no_limits() -> str:
+    """E on finer and finer meshes with the default limits, and with none."""
+    rows = []
+    for name in ("berbyuk2002-rhythm", "berbyuk2002-printed"):
+        found = solution(name)
+        cells = [f"{m['energy_per_metre']:.1f} on {m['elements']}" for m in found.mesh_history]
+        rows.append((f"`{name}`", found.problem.limits.sentence(), ", ".join(cells)))
+    return table(("preset", "limits", "E [J/m] on elements"), rows)
+
+
+def path() -> str:
+    """E along a path, found and foretold by the price at the gait before."""
+    start = solution("berbyuk2002")
+    rows = []
+    for name, values in (
+        ("step_length_m", (0.78, 0.80)),
+        ("corridors.width_sd", (1.1, 1.25)),
+        ("limits.vertical_reaction_body_weights", (1.25, 1.2)),
+    ):
+        for waypoint in ergowalk.follow(start, name, values):
+            found = waypoint.solution
+            rows.append(
+                (
+                    f"`{name}`",
+                    f"{waypoint.value:g}",
+                    f"{waypoint.predicted:.2f}",
+                    f"{found.energy_per_metre:.2f}",
+                    str(found.dataset.attrs["iterations"]),
+                    "yes" if found.acceptable else "no",
+                )
+            )
+    header = ("number", "value", "E foretold [J/m]", "E found [J/m]", "iterations", "acceptable")
+    return table(header, rows)
+
+
+def starts() -> str:
+    """Distinct optima from seeded starts of the default problem."""
+    problem = ergowalk.preset("berbyuk2002")
+    found = ergowalk.solve(problem, starts=STARTS, seed=SEED)
+    catalogue = json.loads(str(found.dataset.attrs["starts"]))
+    best = catalogue["optima"][0]["energy_per_metre"]
+    print(catalogue, file=sys.stderr, flush=True)
+    rows = [
+        (
+            f"{o['energy_per_metre']:.2f} ({100 * (o['energy_per_metre'] / best - 1):+.1f} %)",
+            str(o["hits"]),
+            o["phase_order"],
+            f"{o['distance_deg']:.1f}",
+        )
+        for o in catalogue["optima"]
+    ]
+    header = ("E [J/m], best of its kind", "starts that end there", "phase order")
+    summary = (
+        f"{catalogue['starts']} starts with seed {catalogue['seed']}: "
+        f"{catalogue['converged']} converge, {catalogue['accepted']} are accepted by the audit."
+    )
+    return f"{summary}\n\n" + table((*header, "distance from the first [deg r.m.s.]"), rows)
+
+
+STUDIES = {
+    "halved meshes": halved,
+    "with and without limits": no_limits,
+    "path": path,
+    "starts": starts,
+}
+
+
+if __name__ == "__main__":
+    write_studies(STUDIES, sys.argv[1:])

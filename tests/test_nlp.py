@@ -285,3 +285,12 @@ def test_an_expanded_function_has_its_exact_derivatives(x: Array, own: Array) ->
     found.append(oracle.hessian(x, [], 0.7, own[:6]))
     for one, two in zip(found, expected, strict=True):
         np.testing.assert_allclose(dense(one), two, rtol=1e-11, atol=1e-11)
+
+
+@pytest.mark.parametrize("name", ["heel strike", "a+b", "1st", "toe__off", " (4) "])
+def test_a_kernel_may_be_called_anything(name: str) -> None:
+    x = ca.SX.sym("x")
+    kernel = Kernel(name, x, ca.SX.sym("none", 0), x**2, 2 * x)
+    cost, rows = kernel.values(3.0, [])
+    assert (float(cost), float(rows)) == (9.0, 6.0)
+    assert float(kernel.jacobian(3.0, [])) == 2.0

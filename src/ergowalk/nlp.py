@@ -8,6 +8,7 @@ variables mean.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -76,6 +77,11 @@ class Kernel:
     expansion: Callable[[Any, Any], Any] | None = None
     chain: Chain | None = None
 
+    @property
+    def identifier(self) -> str:
+        """The name in letters that CasADi takes for a function."""
+        return re.sub(r"[^0-9A-Za-z]+", "_", f"kernel {self.name}").strip("_")
+
     def all_parameters(self, variables: Any, parameters: Any) -> Any:
         """Parameters of all uses with the results of the expansion, as MX or DM."""
         if self.expansion is None:
@@ -86,20 +92,24 @@ class Kernel:
     def values(self) -> ca.Function:
         """(v, p) -> (cost, rows)."""
         inputs = [self.variables, self.parameters]
-        return ca.Function(f"{self.name}_values", inputs, [self.cost, self.rows])
+        return ca.Function(f"{self.identifier}_values", inputs, [self.cost, self.rows])
 
     @cached_property
     def gradient(self) -> ca.Function:
         """(v, p) -> dense gradient of the cost."""
         gradient = ca.densify(ca.gradient(self.cost, self.variables))
-        return ca.Function(f"{self.name}_gradient", [self.variables, self.parameters], [gradient])
+        return ca.Function(
+            f"{self.identifier}_gradient", [self.variables, self.parameters], [gradient]
+        )
 
     @cached_property
     def jacobian(self) -> ca.Function:
         """(v, p) -> sparse Jacobian of the rows."""
         chain = self.chain or Chain.of(self.rows, self.variables)
         jacobian = chain.jacobian()
-        return ca.Function(f"{self.name}_jacobian", [self.variables, self.parameters], [jacobian])
+        return ca.Function(
+            f"{self.identifier}_jacobian", [self.variables, self.parameters], [jacobian]
+        )
 
     @cached_property
     def hessian(self) -> ca.Function:
@@ -109,7 +119,7 @@ class Kernel:
         hessian = ca.hessian(weight * self.cost, self.variables)[0] + chain.hessian(multipliers)
         hessian = ca.triu(hessian)
         inputs = [self.variables, self.parameters, weight, multipliers]
-        return ca.Function(f"{self.name}_hessian", inputs, [hessian])
+        return ca.Function(f"{self.identifier}_hessian", inputs, [hessian])
 
 
 @dataclass(frozen=True)

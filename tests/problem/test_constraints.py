@@ -241,7 +241,7 @@ def test_eq9_the_load_stays_on_the_part_that_touches(
 
 
 def test_eq9_has_no_edge_in_swing() -> None:
-    with pytest.raises(KeyError):
+    with pytest.raises(KeyError, match="SWING"):
         c.eq9_pressure_edges(Contact.SWING, HERE)
 
 

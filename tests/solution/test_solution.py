@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from ergowalk.gait.rhythm import PRINTED_RHYTHM
 from ergowalk.problem import Corridors
 from ergowalk.problem.files import problem_to_toml
 from ergowalk.solution import Solution
+from ergowalk.solution.solution import MESH_SHARE
 
 from .made_up import PROBLEM, dataset
 
@@ -40,6 +42,38 @@ def test_attributes_come_back_as_values(solution: Solution) -> None:
     assert solution.rhythm == PRINTED_RHYTHM
     assert solution.problem == PROBLEM
     assert solution.mesh_history == [{"elements": 4, "energy_per_metre": solution.energy_per_metre}]
+
+
+def checked(change: float, *, converged: bool = True, method: str = "collocation") -> Solution:
+    """A gait whose check found another E by this share."""
+    found = dataset()
+    energy = float(found.attrs["energy_per_metre"])
+    history = [
+        {"elements": 4, "energy_per_metre": energy, "converged": True, "final": True},
+        {
+            "elements": 5,
+            "energy_per_metre": energy * (1 + change),
+            "converged": converged,
+            "finer": True,
+        },
+    ]
+    return Solution(found.assign_attrs(mesh_history=json.dumps(history), method=method))
+
+
+def test_the_error_bar_is_twice_what_the_check_changed() -> None:
+    gait = checked(-0.004)
+    assert gait.energy_error == pytest.approx(0.008 * gait.energy_per_metre)
+
+
+def test_the_error_bar_has_a_floor() -> None:
+    gait = checked(0.0001)
+    assert gait.energy_error == pytest.approx(MESH_SHARE * gait.energy_per_metre)
+
+
+def test_there_is_no_error_bar_without_a_check_that_converged(solution: Solution) -> None:
+    assert solution.energy_error is None
+    assert checked(0.001, converged=False).energy_error is None
+    assert checked(0.001, method="spline").energy_error is None
 
 
 def test_acceptable_is_what_was_stored() -> None:

@@ -124,3 +124,16 @@ def test_multipliers_of_another_problem_are_refused(priced: Priced) -> None:
     fewer = data.isel(nlp_rows=slice(0, 100))
     with pytest.raises(GaitFileError, match="= 100: the multipliers do not belong"):
         prices(Solution(fewer))
+
+
+def test_a_stage_fits_a_problem_with_the_same_rows_only(priced: Priced) -> None:
+    problem, order = priced.gait.problem, priced.search.order
+    moved = OrderSearch(
+        problem.replace(step_length_m=0.77), order, priced.search.walker.smoothing, Effort(), None
+    )
+    assert moved.fits(priced.result)
+    without = problem.limits.replace(friction_coefficient="off")
+    other = OrderSearch(
+        problem.replace(limits=without), order, priced.search.walker.smoothing, Effort(), None
+    )
+    assert not other.fits(priced.result)

@@ -70,6 +70,13 @@ def _price(arguments: Namespace) -> int:
     return ACCEPTABLE
 
 
+def _report(arguments: Namespace) -> int:
+    from ergowalk.cli.report_page import run_report
+
+    run_report(arguments)
+    return ACCEPTABLE
+
+
 def _presets(arguments: Namespace) -> int:
     from ergowalk.cli.problems import run_presets
 
@@ -89,6 +96,7 @@ COMMANDS: dict[str, Callable[[Namespace], int]] = {
     "audit": _audit,
     "compare": _compare,
     "price": _price,
+    "report": _report,
     "presets": _presets,
     "init": _init,
 }

@@ -45,6 +45,7 @@ def build_parser() -> Parser:
     _add_audit(commands)
     _add_compare(commands)
     _add_price(commands)
+    _add_report(commands)
     _add_presets(commands)
     _add_init(commands)
     return parser
@@ -184,6 +185,25 @@ def _add_price(commands: Any) -> None:
         type=_path,
         metavar="DIR",
         help="folder for prices.png and prices.svg (default: that of the gait)",
+    )
+    _add_json(parser)
+
+
+def _add_report(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "report",
+        "write a page with stored gaits in motion and their figures",
+        "One HTML file that needs no other and no network: the walkers laid over each other in "
+        "motion, curves against human walking, energy, audit, problem file.",
+    )
+    parser.add_argument("gaits", nargs="+", type=_path, metavar="GAIT.nc", help="stored gaits")
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=_path,
+        metavar="FILE",
+        help="the page; a file there is replaced (default: report.html beside the first gait)",
     )
     _add_json(parser)
 

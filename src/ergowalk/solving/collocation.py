@@ -34,8 +34,9 @@ ROUNDS, MOST_ELEMENTS = 6, 250
 MESH_TOLERANCE = 0.005
 """E may differ by this share between the reported and the next finer mesh."""
 
-IMPULSIVE_LEVELS = (0.55, 0.9, 1.1)
-"""Meshes on which a problem without moment-rate bound or cost is shown."""
+IMPULSIVE_SHARES = (1.0, 0.5)
+"""A problem without moment-rate bound or cost is shown on a coarse mesh, on that with this share of
+its elements halved, and so on."""
 
 
 FAINT = Smoothing(moment_rate=1e-7, metatarsal_rate=1e-7)
@@ -212,18 +213,17 @@ def _show_impulses(coarse: Candidate) -> Gait:
     """
     search = coarse.search
     history: list[dict[str, Any]] = []
-    failed: list[Candidate] = []
-    current, dataset = coarse, None
-    for level in IMPULSIVE_LEVELS:
-        result = search.impulsive(current.result, level)
-        if not result.minimum.converged:
-            failed.append(Candidate(search, result))
-            continue
-        current = Candidate(search, result)
+    results = [search.impulsive(coarse.result)]
+    for share in IMPULSIVE_SHARES:
+        last = results[-1]
+        mesh = finer(last.collocation.mesh, search.residuals(last).errors, share)
+        results.append(search.impulsive(last, mesh))
+    shown = [Candidate(search, result) for result in results if result.minimum.converged]
+    if not shown:
+        return _failed(Candidate(search, results[-1]), [], f"on {results[-1].elements} elements")
+    for current in shown:
         dataset, _ = _dense(current, history)
         history[-1] |= _sharpness(dataset, search)
-    if dataset is None:
-        return _failed(failed[-1], [], f"on {failed[-1].result.elements} elements")
     history[-1]["final"] = True
 
     def listed(key: str, form: str) -> str:

@@ -34,6 +34,9 @@ POINTS = 3
 SEARCH, COARSE = 0.2, 0.42
 """Mesh levels: while phase orders are compared, and of the mesh that is cut from then on."""
 
+IMPULSIVE = 0.3
+"""Mesh level of the first mesh of a problem without minimiser."""
+
 SEARCH_BARRIER = 1e-4
 """Barrier at which the search changes stages: well below it the next one would only start on its
 bounds, far above it the curves are not yet those of a gait."""
@@ -187,15 +190,18 @@ class OrderSearch:
         mesh, stage = self._mesh(curves.times, level), f"mesh level {level:g}"
         return self._run(stage, self.phased, mesh, Start.at(curves), solver, start)
 
-    def impulsive(self, start: StageResult, level: float) -> StageResult:
-        """The gait of a problem without minimiser on the graded mesh of a level.
+    def impulsive(self, start: StageResult, mesh: Mesh | None = None) -> StageResult:
+        """The gait of a problem without minimiser; by default on the graded mesh of the search.
 
         Two Gauss points and moments that are lines: the sharper a peak may be, the longer the
         search for it takes.
         """
         curves, solver = start.trajectory, _warm(1e-6, 1e-3)
-        mesh, stage = self._mesh(curves.times, level), f"mesh level {level:g}"
-        return self._run(stage, self.phased, mesh, Start.at(curves), solver, points=2)
+        first = mesh is None
+        mesh = self._mesh(curves.times, IMPULSIVE) if mesh is None else mesh
+        before = None if first else start
+        at = Start.at(curves)
+        return self._run("impulsive", self.phased, mesh, at, solver, before, points=2)
 
     def residuals(self, result: StageResult) -> Residuals:
         """What the mesh leaves undone between its nodes."""

@@ -99,7 +99,7 @@ def phase_kernel(
     variables = ca.vertcat(local.variables, *slacks)
     given = local.given
     kernel = Kernel(
-        phase.name.replace("+", "_"),
+        phase.name,
         variables,
         ca.vertcat(local.parameters, *(entry.symbols for entry in given.values())),
         cost,

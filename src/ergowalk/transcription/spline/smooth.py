@@ -172,7 +172,7 @@ class SmoothProgramme:
             if f.name == SWING_FOOT and SWING_FOOT in self.spline.extras:
                 cost = cost + SWING_FOOT_COST * weight * (v[3 * i + 2] * TURN[2]) ** 2
         kernel = Kernel(
-            instant.phase.name.replace("+", "_"),
+            instant.phase.name,
             ca.vertcat(v, s, slack, lifted),
             ca.vertcat(instant.known, weight),
             cost,

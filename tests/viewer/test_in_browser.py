@@ -1,0 +1,141 @@
+"""The report in a real browser, opened from disk with the network off."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+CHROMIUM = shutil.which("chromium")
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
+
+WIDTHS = (1280, 390)
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    with sync_api.sync_playwright() as playwright:
+        # the sandbox of Chromium does not start for root, as in most containers
+        chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield chromium
+        chromium.close()
+
+
+@pytest.fixture(scope="module")
+def report(paper_gait_file: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    from ergowalk.solution import Solution
+    from ergowalk.viewer import write_report
+
+    solution = Solution.load(paper_gait_file)
+    return write_report([solution, solution], tmp_path_factory.mktemp("report") / "report.html")
+
+
+@pytest.fixture(params=WIDTHS)
+def page(browser: Any, report: Path, request: pytest.FixtureRequest) -> Iterator[Any]:
+    """The report at both widths; fails if anything was complained of or asked for."""
+    context = browser.new_context(
+        viewport={"width": request.param, "height": 844}, offline=True, has_touch=True
+    )
+    opened = context.new_page()
+    complaints: list[str] = []
+    asked: list[str] = []
+    opened.on("console", lambda message: complaints.append(message.text))
+    opened.on("pageerror", lambda error: complaints.append(str(error)))
+    opened.on("request", lambda request: asked.append(request.url))
+    opened.goto(report.as_uri())
+    yield opened
+    context.close()
+    assert complaints == []
+    assert asked == [report.as_uri()]
+
+
+def position(page: Any) -> float:
+    return float(page.locator(".viewer").get_attribute("data-position"))
+
+
+def picture(page: Any) -> bytes:
+    return page.locator("canvas").screenshot()
+
+
+def cursors(page: Any) -> set[float]:
+    """Where in its plot or bar each cursor stands on the screen, in whole percent."""
+    places = page.locator(".cursor").evaluate_all(
+        """all => all.map((c) => {
+            const plot = c.parentElement.parentElement;
+            const from = plot.getBoundingClientRect().left + plot.clientLeft;
+            return (100 * (c.getBoundingClientRect().left + 1 - from)) / plot.clientWidth;
+        })"""
+    )
+    return {float(round(place)) for place in places}
+
+
+def settle(page: Any) -> None:
+    page.evaluate("new Promise((r) => requestAnimationFrame(() => requestAnimationFrame(r)))")
+
+
+def pause(page: Any) -> None:
+    page.get_by_role("button", name="Pause").click()
+    settle(page)
+
+
+def test_the_film_moves_and_every_cursor_goes_with_it(page: Any) -> None:
+    start, before = position(page), picture(page)
+    page.wait_for_function(
+        f"document.querySelector('.viewer').dataset.position > {start + 0.2}", timeout=20_000
+    )
+    pause(page)
+    assert picture(page) != before
+    here = 100 * (position(page) % 1)
+    assert all(abs(cursor - here) <= 1 for cursor in cursors(page))
+    still = picture(page)
+    settle(page)
+    assert picture(page) == still
+
+
+def test_keys_play_step_and_pause(page: Any) -> None:
+    page.locator("canvas").focus()
+    page.keyboard.press("Space")
+    settle(page)
+    here = position(page)
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("Shift+ArrowRight")
+    settle(page)
+    assert position(page) == pytest.approx(here + 0.11, abs=1e-3)
+    page.keyboard.press("ArrowLeft")
+    settle(page)
+    assert position(page) == pytest.approx(here + 0.10, abs=1e-3)
+    assert page.get_by_role("button", name="Play").count() == 1
+
+
+def test_slider_and_finger_move_through_the_stride(page: Any) -> None:
+    pause(page)
+    page.locator(".scrub").fill("2.25")
+    settle(page)
+    assert cursors(page) == {25.0}
+    assert "stride 3, 25 %" in page.locator(".clock").inner_text()
+    plot = page.locator(".plot").first
+    plot.scroll_into_view_if_needed()
+    box = plot.bounding_box()
+    page.touchscreen.tap(box["x"] + 0.75 * box["width"], box["y"] + box["height"] / 2)
+    settle(page)
+    assert position(page) == pytest.approx(2.75, abs=0.01)
+
+
+def test_a_gait_can_be_hidden(page: Any) -> None:
+    pause(page)
+    lines = page.locator(".plot").first.locator("path[stroke]")
+    assert lines.count() == 2
+    page.get_by_role("checkbox").nth(1).uncheck()
+    assert lines.count() == 1
+    page.get_by_role("checkbox").nth(0).uncheck()
+    settle(page)
+    assert lines.count() == 0
+
+
+def test_nothing_is_wider_than_the_screen(page: Any) -> None:
+    wide = page.evaluate("document.documentElement.scrollWidth - window.innerWidth")
+    assert wide <= 0

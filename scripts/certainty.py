@@ -1,6 +1,6 @@
 """Tables of "How sure is this number?": ``python scripts/certainty.py [NAME ...]``.
 
-Meshes halved everywhere, with limits and without; a path of gaits against its prices; searches from
+Meshes halved everywhere; a path of gaits against its prices; searches from
 seeded starts. Minutes each. The environment variable STARTS sets how many starts there are.
 """
 
@@ -63,16 +63,6 @@ def _energy(search: OrderSearch, stage: StageResult) -> float:
     return dense_energy(dataset, search.problem.step_length_m)
 
 
-def no_limits() -> str:
-    """E on finer and finer meshes with the default limits, and with none."""
-    rows = []
-    for name in ("berbyuk2002-rhythm", "berbyuk2002-printed"):
-        found = solution(name)
-        cells = [f"{m['energy_per_metre']:.1f} on {m['elements']}" for m in found.mesh_history]
-        rows.append((f"`{name}`", found.problem.limits.sentence(), ", ".join(cells)))
-    return table(("preset", "limits", "E [J/m] on elements"), rows)
-
-
 def path() -> str:
     """E along a path, found and foretold by the price at the gait before."""
     start = solution("berbyuk2002")
@@ -124,7 +114,6 @@ def starts() -> str:
 
 STUDIES = {
     "halved meshes": halved,
-    "with and without limits": no_limits,
     "path": path,
     "starts": starts,
 }

@@ -21,6 +21,9 @@ JOINTS = ("hip", "knee", "ankle", "metatarsal")
 AXES = ("x", "y")
 LEGS = (1, 2)
 
+TRUNK_DRAWN = 1.45
+"""Length of the trunk in pictures over the distance r from hip to centre of mass: the shoulders."""
+
 _T, _TL = ("time",), ("time", "leg")
 _TX, _TLX = ("time", "axis"), ("time", "leg", "axis")
 _TLS, _TLJ = ("time", "leg", "segment"), ("time", "leg", "joint")

@@ -9,13 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
 
-from ergowalk.comparison import COMPARED
+from ergowalk.comparison import COMPARED, contact_phases
 from ergowalk.corridors import HumanGait, human_gait
 from ergowalk.errors import GaitFileError
 from ergowalk.plots.curves import (
     Material,
     axis_label,
-    contact_phases,
     curve_keys,
     draw_curve,
     problem_corridor,

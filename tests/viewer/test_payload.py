@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from ergowalk.comparison import body_of, human_of
+from ergowalk.comparison import body_of, contact_phases, human_of
 from ergowalk.corridors import HumanGait
 from ergowalk.errors import GaitFileError
 from ergowalk.solution import Solution
-from ergowalk.viewer.payload import INTERVALS, Frames, contact_phases, gait_payload
+from ergowalk.viewer.payload import INTERVALS, Frames, gait_payload
 
 ROUNDING = 2e-4  # m: both ends of a segment have four decimals in x and y
 
@@ -91,14 +91,14 @@ def test_pressure_is_under_the_foot_and_nowhere_in_swing(payload: dict[str, Any]
 @pytest.mark.parametrize("leg", [1, 2])
 def test_phases_fill_the_stride(paper_gait: xr.Dataset, leg: int) -> None:
     phases = contact_phases(paper_gait, leg)
-    assert [p["start"] for p in phases] == [0.0, *(p["end"] for p in phases[:-1])]
-    assert phases[-1]["end"] == 1.0
-    assert {p["name"] for p in phases} == {"heel", "flat", "forefoot", "toe", "swing"}
+    assert [p.start for p in phases] == [0.0, *(p.end for p in phases[:-1])]
+    assert phases[-1].end == 1.0
+    assert {p.name for p in phases} == {"heel", "flat", "forefoot", "toe", "swing"}
 
 
 def test_phases_change_where_the_rhythm_says(paper_gait: xr.Dataset) -> None:
     rhythm = json.loads(paper_gait.attrs["rhythm"])
-    ends = {p["name"]: p["end"] for p in contact_phases(paper_gait, 1)}
+    ends = {p.name: p.end for p in contact_phases(paper_gait, 1)}
     assert ends["heel"] == pytest.approx(rhythm["heel_end"], abs=1e-9)
     assert ends["toe"] == pytest.approx(rhythm["toe_off"], abs=1e-9)
 

@@ -73,7 +73,7 @@ class Result:
             "energy_per_metre": float(solution.energy_per_metre),
             "energy_error": solution.energy_error,
             "limits": problem.limits.sentence(),
-            "cost_of_transport": cost_of_transport(solution),
+            "cost_of_transport": solution.cost_of_transport,
             "energy_share": energy_shares(solution),
             "rhythm": solution.rhythm.as_dict(),
             "rhythm_fixed": fixed_instants(problem),
@@ -177,12 +177,6 @@ class Result:
             where = f" ({place})" if place else ""
             lines.append(f"{line.what}: {value}, at most {line.tolerance:.3g}{unit}{where}")
         return lines
-
-
-def cost_of_transport(solution: Solution) -> float:
-    """E / (M g): energy per weight and distance."""
-    body = solution.problem.body
-    return float(solution.energy_per_metre) / (body.total_mass * body.gravity_m_s2)
 
 
 def energy_shares(solution: Solution) -> dict[str, float]:

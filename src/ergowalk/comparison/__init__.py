@@ -7,6 +7,7 @@ answer says for what share of the stride that floor applied.
 """
 
 from ergowalk.comparison.distance import compare, share_within_one, stride_mean
+from ergowalk.comparison.phases import PhaseSpan, contact_phases
 from ergowalk.comparison.reading import (
     DEFAULT_SOURCE,
     StrideCurves,
@@ -27,10 +28,12 @@ __all__ = [
     "ComparedSignal",
     "Comparison",
     "Extremes",
+    "PhaseSpan",
     "SignalComparison",
     "StrideCurves",
     "body_of",
     "compare",
+    "contact_phases",
     "curve",
     "human_of",
     "share_within_one",

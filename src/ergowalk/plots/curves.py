@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 from ergowalk.comparison import (
     COMPARED,
     ComparedSignal,
+    PhaseSpan,
     StrideCurves,
+    contact_phases,
     curve,
     stride_curves,
     stride_fraction,
@@ -26,15 +28,6 @@ Array = NDArray[np.float64]
 
 _DENSE = np.linspace(0.0, 1.0, 401)
 _DIFFERENT = 0.05  # deg: from here on the problem's corridor is not the band of 1 SD
-
-
-@dataclass(frozen=True)
-class PhaseSpan:
-    """A contact phase of leg 1 between two stride fractions."""
-
-    name: str
-    start: float
-    end: float
 
 
 @dataclass(frozen=True)
@@ -131,37 +124,6 @@ def problem_corridor(
         if np.nanmax(off) <= _DIFFERENT:
             return None
     return lower, upper
-
-
-def contact_phases(dataset: xr.Dataset) -> tuple[PhaseSpan, ...]:
-    """The contact phases of leg 1 in time order; those without duration are left out.
-
-    Such is the next heel contact, where the file has it as its last instant.
-
-    Raises
-    ------
-    GaitFileError
-        If ``contact_phase`` is missing.
-    """
-    s = stride_fraction(dataset)
-    codes = curve(dataset, "contact_phase", {"leg": 1})
-    names = _phase_names(dataset)
-    change = np.flatnonzero(np.diff(codes)) + 1
-    starts = np.array([0, *change])
-    edges = [*s[starts], 1.0]
-    spans = (
-        PhaseSpan(names.get(int(code), "?"), float(a), float(b))
-        for code, a, b in zip(codes[starts], edges[:-1], edges[1:], strict=True)
-    )
-    return tuple(span for span in spans if span.end > span.start)
-
-
-def _phase_names(dataset: xr.Dataset) -> dict[int, str]:
-    attributes = dataset["contact_phase"].attrs
-    meanings = attributes.get("flag_meanings", "swing heel flat forefoot toe")
-    names = meanings.split() if isinstance(meanings, str) else [str(name) for name in meanings]
-    values = np.atleast_1d(attributes.get("flag_values", np.arange(len(names))))
-    return {int(value): name for value, name in zip(values, names, strict=False)}
 
 
 def _mark_phases(axes: Axes, phases: tuple[PhaseSpan, ...], fontsize: float) -> None:

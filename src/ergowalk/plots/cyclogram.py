@@ -15,15 +15,13 @@ from numpy.typing import NDArray
 from ergowalk.body import LegParameters
 from ergowalk.comparison import body_of, curve, stride_fraction
 from ergowalk.plots import style
+from ergowalk.quantities import TRUNK_DRAWN
 
 Array = NDArray[np.float64]
 
 INTERVALS = 22
 """Time steps of a double step: figures at 0, T/22, ..., T. Even, so that every figure of the
 second half stands where the other leg stood half a stride before."""
-
-TRUNK_DRAWN = 1.45
-"""Length of the trunk line over the distance r from hip to centre of mass: about the shoulders."""
 
 
 @dataclass(frozen=True)

@@ -54,6 +54,12 @@ class Solution:
         return float(self.dataset.attrs["energy_per_metre"])
 
     @property
+    def cost_of_transport(self) -> float:
+        """E / (M g): energy per weight and distance."""
+        body = self.problem.body
+        return self.energy_per_metre / (body.total_mass * body.gravity_m_s2)
+
+    @property
     def energy_error(self) -> float | None:
         """How far E may be from that of ever finer meshes [J/m]; None where that is not known.
 

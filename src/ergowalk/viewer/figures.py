@@ -59,7 +59,7 @@ def headline(solution: Solution, acceptable: bool) -> Rows:
     return [
         ("E", f"{energy:.2f}{bar} J/m"),
         ("with the limits", problem.limits.sentence()),
-        ("cost of transport", f"{energy / weight:.4f} (E / M g)"),
+        ("cost of transport", f"{solution.cost_of_transport:.4f} (E / M g)"),
         (
             "walk",
             f"step {problem.step_length_m:g} m, stride {problem.stride_time_s:g} s, "

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -10,19 +10,16 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from ergowalk.body import Body
-from ergowalk.comparison import body_of, curve, stride_curves, stride_fraction
+from ergowalk.comparison import body_of, contact_phases, curve, stride_curves, stride_fraction
 from ergowalk.corridors import HumanGait
 from ergowalk.mechanics.kinematics import LegMotion, Point, Rotation, leg_points
-from ergowalk.quantities import JOINTS, LEGS, SEGMENTS
+from ergowalk.quantities import JOINTS, LEGS, SEGMENTS, TRUNK_DRAWN
 
 Array = NDArray[np.float64]
 
 INTERVALS = 300
 """Intervals between the frames of a stride: at a usual stride time more than the 60 a second that
 a screen shows. Even, so that half a stride is a frame."""
-
-TRUNK_DRAWN = 1.45
-"""Length of the trunk line over the distance r from hip to centre of mass: about the shoulders."""
 
 POINTS = ("knee", "ankle", "heel", "metatarsal", "toe_tip")
 """The points of a leg below the hip, as :class:`ergowalk.mechanics.kinematics.LegPoints` has
@@ -130,31 +127,6 @@ class Frames:
         return mixed
 
 
-def contact_phases(dataset: xr.Dataset, leg: int) -> list[dict[str, Any]]:
-    """Name, start and end (stride fractions) of the contact phases of a leg, in time order.
-
-    Raises
-    ------
-    GaitFileError
-        If ``contact_phase`` is missing.
-    """
-    fraction = stride_fraction(dataset)
-    codes = curve(dataset, "contact_phase", {"leg": leg})
-    names = dict(
-        enumerate(str(dataset["contact_phase"].attrs.get("flag_meanings", _CONTACTS)).split())
-    )
-    starts = [0, *(np.flatnonzero(np.diff(codes)) + 1).tolist()]
-    edges = [*fraction[starts].tolist(), 1.0]
-    return [
-        {"name": names.get(int(codes[i]), "?"), "start": start, "end": end}
-        for i, (start, end) in zip(starts, pairwise(edges), strict=True)
-        if end > start  # the next heel contact may stand at the last instant
-    ]
-
-
-_CONTACTS = "swing heel flat forefoot toe"
-
-
 def _leg(dataset: xr.Dataset, frames: Frames, body: Body, hip: Array, leg: int) -> dict[str, Any]:
     """Points, reaction, pressure and joint powers of leg 1 or 2 at the frames."""
     angles = (Rotation(frames.at("segment_angle", leg=leg, segment=s)) for s in SEGMENTS)
@@ -167,7 +139,7 @@ def _leg(dataset: xr.Dataset, frames: Frames, body: Body, hip: Array, leg: int) 
         "reaction": _rounded(np.stack(force, axis=1)),
         "pressure": _rounded(frames.at("center_of_pressure", gaps=True, leg=leg)),
         "power": _rounded(np.stack(power, axis=1)),
-        "phases": contact_phases(dataset, leg),
+        "phases": [asdict(span) for span in contact_phases(dataset, leg)],
     }
 
 

@@ -33,7 +33,7 @@ def test_a_neighbour_is_an_accepted_gait_of_its_own_problem(
     assert waypoint.steps == 1
 
 
-def test_a_neighbour_begins_on_the_mesh_of_the_start_and_needs_half_the_iterations(
+def test_a_neighbour_begins_on_the_mesh_of_the_start_and_needs_fewer_iterations(
     walked: tuple[Solution, Waypoint],
 ) -> None:
     start, waypoint = walked
@@ -41,7 +41,7 @@ def test_a_neighbour_begins_on_the_mesh_of_the_start_and_needs_half_the_iteratio
     first = waypoint.solution.mesh_history[0]
     assert first["elements"] == final["elements"]
     assert first["iterations"] < start.dataset.attrs["iterations"] / 3
-    assert waypoint.solution.dataset.attrs["iterations"] < start.dataset.attrs["iterations"] / 2
+    assert waypoint.solution.dataset.attrs["iterations"] < start.dataset.attrs["iterations"]
 
 
 def test_e_is_what_its_price_foretold(walked: tuple[Solution, Waypoint]) -> None:

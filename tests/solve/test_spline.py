@@ -26,7 +26,6 @@ from ergowalk.solving import (
 )
 from ergowalk.solving.spline_rosenbrock import POWER
 from ergowalk.solving.stages import Effort, OrderSearch
-from ergowalk.solving.start import StartingGait
 from ergowalk.transcription.spline.semi_inverse import MEASURES
 from ergowalk.transcription.walker import Smoothing
 
@@ -223,7 +222,7 @@ def test_a_free_rhythm_is_held_and_the_status_says_so() -> None:
 def test_a_collocation_can_begin_with_it(climbed: Solution) -> None:
     """Less than a hundred iterations, which the human means need before the rhythm is free."""
     search = OrderSearch(FIXED, PhaseOrder.TOE_OFF_FIRST, Smoothing(), Effort(), None)
-    found = collocation._begin([search], StartingGait(climbed))
+    found = collocation._begin([search], climbed)
     assert found is not None
     assert found.result.minimum.converged
     assert found.result.minimum.iterations < 100

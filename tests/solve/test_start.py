@@ -30,7 +30,7 @@ def begun(problem: GaitProblem, gait: Solution) -> collocation.Candidate | None:
     """The coarse stage from a gait."""
     orders = problem.rhythm.orders()
     searches = [OrderSearch(problem, o, Smoothing(), Effort(), None) for o in orders]
-    return collocation._begin(searches, StartingGait(gait))
+    return collocation._begin(searches, gait)
 
 
 def test_the_side_inside_the_phase_is_taken_where_an_instant_stands_twice() -> None:

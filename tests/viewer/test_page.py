@@ -172,7 +172,7 @@ def test_an_unusable_gait_is_named_by_its_file(solution: Solution, tmp_path: Pat
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("name", ["acceptable", "mesh_history", "rhythm", "solver_status"])
+@pytest.mark.parametrize("name", ["acceptable", "rhythm", "solver_status"])
 def test_a_gait_that_does_not_say_how_it_ended_is_refused(solution: Solution, name: str) -> None:
     dataset = solution.dataset.copy()
     dataset.attrs = {key: v for key, v in dataset.attrs.items() if key != name}

@@ -67,10 +67,11 @@ class Solution:
         halving every element twice has shown, in "How sure is this number?". Of a gait on
         splines E depends on the knots, which no check moves.
         """
-        if self.dataset.attrs.get("method") != "collocation":
+        attributes = self.dataset.attrs
+        if attributes.get("method") != "collocation" or "mesh_history" not in attributes:
             return None
         found = {k: e for e in self.mesh_history for k in ("final", "finer") if e.get(k)}
-        if len(found) < 2 or not found["finer"]["converged"]:
+        if len(found) < 2 or not found["finer"].get("converged"):
             return None
         change = found["finer"]["energy_per_metre"] - found["final"]["energy_per_metre"]
         return float(max(2 * abs(change), MESH_SHARE * self.energy_per_metre))

@@ -47,7 +47,7 @@ def test_the_test_environment_pins_what_the_tests_need() -> None:
 @pytest.mark.parametrize("name", ["pyproject.toml", ".ci/run", ".ci/oldest", "README.md"])
 def test_no_package_index_is_named(name: str) -> None:
     text = (ROOT / name).read_text("utf-8")
-    assert re.findall(r"index-url|find-links|trusted-host", text) == []
+    assert re.findall(r"(?i)index[-_]url|find[-_]links|trusted[-_]host", text) == []
 
 
 def test_rooms_in_the_guide_are_the_layers_that_the_linter_holds() -> None:

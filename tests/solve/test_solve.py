@@ -172,9 +172,9 @@ def test_an_interrupt_in_the_progress_callback_ends_the_search() -> None:
 
     def interrupt(line: Progress) -> None:
         calls.append(line)
-        raise KeyboardInterrupt
+        raise KeyboardInterrupt("enough")
 
-    with pytest.raises(KeyboardInterrupt):
+    with pytest.raises(KeyboardInterrupt, match="enough"):
         hurried(FIXED, interrupt)
     assert len(calls) == 1
 

@@ -237,9 +237,9 @@ def test_progress_is_told_and_an_interrupt_ends_the_search() -> None:
     def interrupt(line: Progress) -> None:
         told.append(line)
         if len(told) == 3:
-            raise KeyboardInterrupt
+            raise KeyboardInterrupt("enough")
 
-    with pytest.raises(KeyboardInterrupt):
+    with pytest.raises(KeyboardInterrupt, match="enough"):
         solve(
             FIXED,
             method="spline",

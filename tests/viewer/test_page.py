@@ -172,6 +172,12 @@ def test_an_unusable_gait_is_named_by_its_file(solution: Solution, tmp_path: Pat
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_record_of_meshes_that_cannot_be_read_is_refused(solution: Solution) -> None:
+    dataset = solution.dataset.assign_attrs(mesh_history="no JSON")
+    with pytest.raises(GaitFileError, match="mesh_history"):
+        report_html([Solution(dataset)])
+
+
 @pytest.mark.parametrize("name", ["acceptable", "rhythm", "solver_status"])
 def test_a_gait_that_does_not_say_how_it_ended_is_refused(solution: Solution, name: str) -> None:
     dataset = solution.dataset.copy()

@@ -138,17 +138,17 @@ class OrderSearch:
 
     def started(self, start: Start) -> StageResult:
         """First dynamics from the curves of a solved gait, switching times free at once."""
-        solver = Ipopt(tolerance=1e-4, strategy="monotone", barrier_start=1e-3, push=1e-4)
         mesh = self._mesh(start.times, COARSE)
-        return self._run("from a gait", self.phased, mesh, start, solver)
+        return self._run("from a gait", self.phased, mesh, start, _warm(1e-4, 1e-3))
 
     def fits(self, before: StageResult) -> bool:
-        """Whether a stage of another problem has the same unknowns and rows, so that its
-        multipliers mean the same here."""
-        kernels = Collocation(
-            self.phased, before.collocation.mesh, before.points, self.store
-        ).kernels
-        pairs = zip(kernels, before.collocation.kernels, strict=True)
+        """Whether a stage of another problem has the same unknowns and rows.
+
+        Then its multipliers mean the same here.
+        """
+        mesh = before.collocation.mesh
+        own = Collocation(self.phased, mesh, before.points, self.store)
+        pairs = zip(own.kernels, before.collocation.kernels, strict=True)
         return all(
             here.labels == there.labels
             and here.kernel.variables.numel() == there.kernel.variables.numel()
@@ -158,9 +158,8 @@ class OrderSearch:
     def continued(self, before: StageResult, times: Mapping[str, float]) -> StageResult:
         """The gait of a neighbouring problem, from its point and multipliers, on its mesh."""
         start = Start(before.trajectory.as_guess(), times)
-        solver = _warm(1e-6, 1e-6)
         mesh = before.collocation.mesh
-        return self._run("from a gait", self.phased, mesh, start, solver, before)
+        return self._run("from a gait", self.phased, mesh, start, _warm(1e-6, 1e-6), before)
 
     def free_rhythm(
         self, held: StageResult, perturbation: Perturbation | None = None
@@ -196,11 +195,11 @@ class OrderSearch:
         Two Gauss points and moments that are lines: the sharper a peak may be, the longer the
         search for it takes.
         """
-        curves, solver = start.trajectory, _warm(1e-6, 1e-3)
-        first = mesh is None
-        mesh = self._mesh(curves.times, IMPULSIVE) if mesh is None else mesh
-        before = None if first else start
-        at = Start.at(curves)
+        at = Start.at(start.trajectory)
+        before: StageResult | None = start
+        if mesh is None:  # after the search, whose elements have more Gauss points
+            mesh, before = self._mesh(at.times, IMPULSIVE), None
+        solver = _warm(1e-6, 1e-3)
         return self._run("impulsive", self.phased, mesh, at, solver, before, points=2)
 
     def residuals(self, result: StageResult) -> Residuals:

@@ -28,10 +28,12 @@ def browser() -> Iterator[Any]:
 @pytest.fixture(scope="module")
 def report(paper_gait_file: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     from ergowalk.solution import Solution
-    from ergowalk.viewer import write_report
+    from ergowalk.viewer import report_html
 
     solution = Solution.load(paper_gait_file)
-    return write_report([solution, solution], tmp_path_factory.mktemp("report") / "report.html")
+    path = tmp_path_factory.mktemp("report") / "report.html"
+    path.write_text(report_html([solution, solution]), "utf-8")
+    return path
 
 
 @pytest.fixture(params=WIDTHS)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from argparse import Namespace
 from pathlib import Path
 
+from ergowalk.cli.output import write_text
 from ergowalk.cli.streams import emit, emit_json
 from ergowalk.errors import OutputError
 from ergowalk.solution import Solution
@@ -23,14 +24,14 @@ def run_report(arguments: Namespace) -> None:
     OutputError
         If the page cannot be written, or would replace one of the gaits.
     """
-    from ergowalk.viewer import write_report
+    from ergowalk.viewer import report_html
 
     paths: list[Path] = arguments.gaits
     target: Path = arguments.output or paths[0].parent / PAGE
     solutions = [Solution.load(path) for path in paths]
     if any(target.exists() and target.samefile(path) for path in paths):
         raise OutputError("is one of the gaits", "choose another file with -o", file=str(target))
-    write_report(solutions, target, [str(path) for path in paths])
+    write_text(target, report_html(solutions, [str(path) for path in paths]))
     if arguments.json:
         gaits = [_as_dict(path, s) for path, s in zip(paths, solutions, strict=True)]
         emit_json({"report": str(target), "bytes": target.stat().st_size, "gaits": gaits})

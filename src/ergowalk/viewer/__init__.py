@@ -1,6 +1,6 @@
 """A gait to look at: one HTML file with the walker in motion, its curves and its figures."""
 
-from ergowalk.viewer.page import report_html, write_report
+from ergowalk.viewer.page import report_html
 from ergowalk.viewer.payload import gait_payload
 
-__all__ = ["gait_payload", "report_html", "write_report"]
+__all__ = ["gait_payload", "report_html"]

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache
 from html import escape
 from importlib import resources
-from pathlib import Path
 from typing import Any
 
 from ergowalk.audit import AuditReport
 from ergowalk.comparison import Comparison, compare, human_of
 from ergowalk.corridors import SIGNALS
-from ergowalk.errors import GaitFileError, InputError, OutputError
+from ergowalk.errors import GaitFileError, InputError
 from ergowalk.quantities import JOINTS
 from ergowalk.solution import Solution
 from ergowalk.viewer.figures import headline, work_by_joint
@@ -24,37 +21,6 @@ from ergowalk.viewer.payload import gait_payload
 
 # Nothing may be fetched, whatever a gait file says.
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
-
-
-def write_report(
-    solutions: Sequence[Solution], path: Path, files: Sequence[str] | None = None
-) -> Path:
-    """Write the report of some gaits; the file is written beside its target and renamed.
-
-    ``files`` are the names of their files for error messages.
-
-    Raises
-    ------
-    InputError
-        As :func:`report_html`. Nothing is written then.
-    OutputError
-        If the file cannot be written.
-    """
-    content = report_html(solutions, files).encode("utf-8")
-    draft = path.parent / f".{path.name}.{os.getpid()}.part"
-    try:
-        draft.write_bytes(content)
-        os.replace(draft, path)
-    except OSError as error:
-        raise OutputError(
-            f"cannot be written ({error.strerror or error})",
-            "choose another place with -o",
-            file=str(path),
-        ) from None
-    finally:
-        with suppress(OSError):
-            draft.unlink()
-    return path
 
 
 def report_html(solutions: Sequence[Solution], files: Sequence[str] | None = None) -> str:

@@ -33,15 +33,22 @@ def test_a_neighbour_is_an_accepted_gait_of_its_own_problem(
     assert waypoint.steps == 1
 
 
-def test_a_neighbour_begins_on_the_mesh_of_the_start_and_needs_fewer_iterations(
+def test_a_neighbour_takes_one_mesh_and_few_iterations(
     walked: tuple[Solution, Waypoint],
 ) -> None:
+    """It keeps the mesh of the start and takes its check over."""
     start, waypoint = walked
     (final,) = (m for m in start.mesh_history if m.get("final"))
-    first = waypoint.solution.mesh_history[0]
-    assert first["elements"] == final["elements"]
-    assert first["iterations"] < start.dataset.attrs["iterations"] / 3
-    assert waypoint.solution.dataset.attrs["iterations"] < start.dataset.attrs["iterations"]
+    own, check = waypoint.solution.mesh_history
+    assert own["elements"] == final["elements"]
+    assert waypoint.solution.dataset.attrs["iterations"] == own["iterations"]
+    assert own["iterations"] < start.dataset.attrs["iterations"] / 3
+    assert check["carried_from"] == start.energy_per_metre
+    share = check["energy_per_metre"] / own["energy_per_metre"]
+    (finer,) = (m for m in start.mesh_history if m.get("finer"))
+    assert share == pytest.approx(finer["energy_per_metre"] / final["energy_per_metre"], rel=1e-12)
+    (line,) = (r for r in waypoint.solution.audit().lines if r.key == "mesh")
+    assert f"as a check of a gait with {start.energy_per_metre:.4g} J/m lets expect" in line.note
 
 
 def test_e_is_what_its_price_foretold(walked: tuple[Solution, Waypoint]) -> None:

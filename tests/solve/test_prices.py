@@ -13,7 +13,7 @@ from ergowalk.problem import GaitProblem
 from ergowalk.problem.objective import energy_per_metre
 from ergowalk.solution import Solution
 from ergowalk.solvers.ipopt import Ipopt
-from ergowalk.solving.memory import recall
+from ergowalk.solving.memory import recall, recall_for
 from ergowalk.solving.prices import Prices, changed, given_numbers, prices
 from ergowalk.solving.stages import Effort, OrderSearch, StageResult, Start
 
@@ -126,14 +126,17 @@ def test_multipliers_of_another_problem_are_refused(priced: Priced) -> None:
         prices(Solution(fewer))
 
 
-def test_a_stage_fits_a_problem_with_the_same_rows_only(priced: Priced) -> None:
+def test_a_stage_is_recalled_for_a_problem_with_the_same_rows_only(priced: Priced) -> None:
     problem, order = priced.gait.problem, priced.search.order
-    moved = OrderSearch(
-        problem.replace(step_length_m=0.77), order, priced.search.walker.smoothing, Effort(), None
-    )
-    assert moved.fits(priced.result)
+    smoothing = priced.search.walker.smoothing
+
+    def recalled(other: GaitProblem, points: int = 3) -> StageResult | None:
+        return recall_for(priced.gait, OrderSearch(other, order, smoothing, Effort(), None), points)
+
+    moved = recalled(problem.replace(step_length_m=0.77))
+    assert moved is not None
+    assert moved.collocation.signature == priced.result.collocation.signature
+    assert np.array_equal(moved.minimum.x, priced.result.minimum.x)
+    assert recalled(problem, points=2) is None
     without = problem.limits.replace(friction_coefficient="off")
-    other = OrderSearch(
-        problem.replace(limits=without), order, priced.search.walker.smoothing, Effort(), None
-    )
-    assert not other.fits(priced.result)
+    assert recalled(problem.replace(limits=without)) is None

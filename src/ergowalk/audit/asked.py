@@ -135,6 +135,10 @@ def mesh_line(record: Record) -> AuditLine:
         f"{energy:.4g} J/m with {reported['elements']} elements, "
         f"{check['energy_per_metre']:.4g} J/m with {check['elements']}"
     )
+    if "carried_from" in check:
+        note += (
+            f", as a check of a gait with {as_number(check['carried_from']):.4g} J/m lets expect"
+        )
     change = abs(check["energy_per_metre"] - energy) / energy
     return residuals.MESH.judged(Worst(change, ""), note)
 

@@ -96,6 +96,11 @@ def _add_solve(commands: Any) -> None:
         help="a stored gait, by whatever method, from which a collocation begins",
     )
     parser.add_argument(
+        "--recheck",
+        action="store_true",
+        help="with --start: check the mesh on a finer one even where the check of the start holds",
+    )
+    parser.add_argument(
         "--starts",
         type=int,
         metavar="N",

@@ -97,7 +97,7 @@ def _choices(arguments: Namespace) -> dict[str, Any]:
     if arguments.start is not None:
         from ergowalk.solution import Solution
 
-        chosen["start"] = Solution.load(arguments.start)
+        chosen |= {"start": Solution.load(arguments.start), "recheck": arguments.recheck}
     if arguments.starts is not None:
         chosen |= {k: getattr(arguments, k) for k in ("starts", "seed", "workers")}
     return chosen

@@ -67,6 +67,7 @@ def describe(
     problem: GaitProblem,
     rhythm: Rhythm,
     *,
+    energy: float,
     method: str,
     status: str,
     history: list[dict[str, Any]],
@@ -78,7 +79,7 @@ def describe(
     return dataset.assign_attrs(
         {
             "title": f"energy-optimal gait, problem {problem.name}",
-            "energy_per_metre": dense_energy(dataset, problem.step_length_m),
+            "energy_per_metre": energy,
             "step_length": problem.step_length_m,
             "stride_time": problem.stride_time_s,
             "method": method,

@@ -7,13 +7,13 @@ from typing import Any
 
 import xarray as xr
 
-from ergowalk.errors import GaitFileError
 from ergowalk.problem import GaitProblem
 from ergowalk.problem.objective import energy_per_metre
 from ergowalk.solution import Solution
 from ergowalk.solution.progress import Report
 from ergowalk.solving.answer import dense_energy, dense_gait, describe, judged, rhythm_of
-from ergowalk.solving.memory import recall, remember
+from ergowalk.solving.check import MeshCheck
+from ergowalk.solving.memory import recall_for, remember
 from ergowalk.solving.stages import (
     COARSE,
     POINTS,
@@ -49,6 +49,7 @@ def solve_collocation(
     start: Solution | None,
     progress: Report | None,
     perturbation: Perturbation | None = None,
+    recheck: bool = False,
 ) -> Solution:
     """The cheapest gait of all phase orders that the problem allows; see :func:`~.verb.solve`."""
     effort, store = Effort(), KernelStore()
@@ -60,12 +61,20 @@ def solve_collocation(
     begun = None if start is None else _begin(searches, start)
     candidates = [begun] if begun else [_searched(s, perturbation) for s in searches]
     best = min(candidates, key=lambda c: (not c.result.minimum.converged, c.result.energy_at_nodes))
+    check = None
+    if begun is not None and begun.continued and start is not None and not recheck:
+        check = MeshCheck.of(start)
+        neighbour = _taken_over(begun, check, [])
+        if neighbour is not None:
+            found = _finished(neighbour, candidates, effort, weights)
+            if found.acceptable:
+                return found
     if not problem.limits.bounds_moment_rate:
         gait = _show_impulses(best)
     else:
         if begun is None and best.result.minimum.converged:
             best = replace(best, result=best.search.remeshed(best.result, COARSE))
-        gait = _refine(best)
+        gait = _refine(best, check)
     if start is not None and begun is None:
         words = "; the start could not be used, so the search began from the human means"
         gait = replace(gait, status=gait.status + words)
@@ -74,10 +83,11 @@ def solve_collocation(
 
 @dataclass(frozen=True)
 class Candidate:
-    """A stage of one phase order."""
+    """A stage of one phase order; whether it continued that of a neighbour on the same mesh."""
 
     search: OrderSearch
     result: StageResult
+    continued: bool = False
 
 
 @dataclass(frozen=True)
@@ -109,24 +119,32 @@ def _begin(searches: list[OrderSearch], start: Solution) -> Candidate | None:
     for search in searches:
         times = begun.times(search.problem)
         if search.order is begun.order and times is not None:
-            before = _remembered(start, search)
+            before = recall_for(start, search, POINTS)
             if before is not None:
                 result = search.continued(before, times)
                 if result.minimum.converged:
-                    return Candidate(search, result)
+                    return Candidate(search, result, continued=True)
             result = search.started(Start(begun.guess(search.problem), times))
             return Candidate(search, result) if result.minimum.converged else None
     return None
 
 
-def _remembered(start: Solution, search: OrderSearch) -> StageResult | None:
-    """The stage that a gait came from, if a search can continue from its multipliers."""
-    try:
-        old, before = recall(start)
-    except GaitFileError:
+def _taken_over(
+    found: Candidate, check: MeshCheck | None, history: list[dict[str, Any]]
+) -> Gait | None:
+    """The gait with the check of its neighbour's mesh, where that holds for it too.
+
+    The mesh is the neighbour's, or that with some elements cut.
+    """
+    if check is None:
         return None
-    same = old.order is search.order and before.points == POINTS and search.fits(before)
-    return before if same else None
+    record = list(history)
+    dataset, energy = _dense(found, record, final=True)
+    if not check.holds_for(energy, found.result.elements):
+        return None
+    record.append(check.record(energy))
+    status = check.words(energy, found.result.elements)
+    return Gait(found, dataset, record, status, settled=True)
 
 
 def _record(result: StageResult, energy: float, **flags: bool) -> dict[str, Any]:
@@ -156,8 +174,8 @@ def _dense(
     return dataset, energy
 
 
-def _refine(coarse: Candidate) -> Gait:
-    """The reported gait and the check of its mesh.
+def _refine(coarse: Candidate, check_before: MeshCheck | None) -> Gait:
+    """The reported gait and the check of its mesh, or a neighbour's where that holds.
 
     Elements are cut until none has too large an error, then until E stands still: if it moves by
     more than :data:`MESH_TOLERANCE` on the mesh of the check, that mesh is the next to be checked.
@@ -177,6 +195,9 @@ def _refine(coarse: Candidate) -> Gait:
         if not final.result.minimum.converged:
             return _failed(final, history, f"on {final.result.elements} elements")
         residuals = search.residuals(final.result)
+    taken_over = _taken_over(final, check_before, history)
+    if taken_over is not None:
+        return taken_over
     dataset, reported = _dense(final, history)
     while True:
         mesh = finer(final.result.collocation.mesh, residuals.errors)
@@ -281,12 +302,13 @@ def _finished(
         "solve_time": effort.solve_time,
         "build_time": effort.build_time,
         # apart from the rest of the history: the same solve twice differs in its clocks alone
-        "mesh_times": _json([record.pop("solve_time") for record in gait.history]),
+        "mesh_times": _json([record.pop("solve_time", 0.0) for record in gait.history]),
     }
     dataset = describe(
         gait.dataset,
         problem,
         rhythm_of(gait.candidate.result.trajectory, problem.stride_time_s),
+        energy=next(e["energy_per_metre"] for e in gait.history if e.get("final")),
         method="collocation",
         status=gait.status,
         history=gait.history,

@@ -1,11 +1,12 @@
 """What a collocation leaves in a gait file beside the curves: its point and its multipliers.
 
-With them a stored gait can be priced, or continued, without solving it again.
+With them a stored gait can be priced, or its neighbour found, without solving it again.
 """
 
 from __future__ import annotations
 
 import json
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -46,6 +47,7 @@ def remember(dataset: xr.Dataset, search: OrderSearch, result: StageResult) -> x
         "order": str(search.order),
         "smoothing": vars(search.walker.smoothing),
         "objective": minimum.objective,
+        "signature": result.collocation.signature,
     }
     return dataset.assign(variables).assign_attrs({MESH: json.dumps(mesh)})
 
@@ -58,26 +60,56 @@ def recall(solution: Solution) -> tuple[OrderSearch, StageResult]:
     GaitFileError
         If the gait was not found by collocation, or its file keeps no multipliers.
     """
-    data = solution.dataset
-    if MESH not in data.attrs or any(name not in data for name in (POINT, AT_BOUNDS, AT_ROWS)):
+    mesh = _mesh(solution)
+    if mesh is None:
         raise GaitFileError(
             "keeps no multipliers",
             "solve it by collocation with this version, then ask again",
             field=AT_ROWS,
         )
-    mesh = json.loads(data.attrs[MESH])
     order, smoothing = PhaseOrder(mesh["order"]), Smoothing(**mesh["smoothing"])
     search = OrderSearch(solution.problem, order, smoothing, Effort(), None)
-    edges = tuple(np.array(part) for part in mesh["fractions"])
-    collocation = Collocation(search.phased, edges, mesh["points"], search.store)
-    x, bounds, rows = (data[name].to_numpy() for name in (POINT, AT_BOUNDS, AT_ROWS))
-    if len(x) != collocation.layout.size or len(rows) != len(collocation.programme.labels):
+    stage = _stage(solution, mesh, search)
+    if stage is None:
         raise GaitFileError(
             "the multipliers do not belong to the stored problem",
             "solve it again with this version",
             field=AT_ROWS,
-            value=len(rows),
+            value=len(solution.dataset[AT_ROWS]),
         )
+    return search, stage
+
+
+def recall_for(solution: Solution, search: OrderSearch, points: int) -> StageResult | None:
+    """The stage that a stored gait came from, as one of another problem's search.
+
+    None unless that problem has the same unknowns and rows, so that multipliers mean the same.
+    """
+    mesh = _mesh(solution)
+    if mesh is None or mesh["order"] != str(search.order) or mesh["points"] != points:
+        return None
+    stage = _stage(solution, mesh, search)
+    same = stage is not None and stage.collocation.signature == mesh.get("signature")
+    return stage if same else None
+
+
+def _mesh(solution: Solution) -> dict[str, Any] | None:
+    """What the file says of the mesh, where point and multipliers are there too."""
+    data = solution.dataset
+    if MESH not in data.attrs or any(name not in data for name in (POINT, AT_BOUNDS, AT_ROWS)):
+        return None
+    mesh: dict[str, Any] = json.loads(data.attrs[MESH])
+    return mesh
+
+
+def _stage(solution: Solution, mesh: dict[str, Any], search: OrderSearch) -> StageResult | None:
+    """The stored stage in the unknowns of a search; None where their numbers differ."""
+    data = solution.dataset
+    edges = tuple(np.array(part) for part in mesh["fractions"])
+    collocation = Collocation(search.phased, edges, mesh["points"], search.store)
+    x, bounds, rows = (data[name].to_numpy() for name in (POINT, AT_BOUNDS, AT_ROWS))
+    if len(x) != collocation.layout.size or len(rows) != len(collocation.programme.labels):
+        return None
     minimum = Minimum(
         x=x,
         objective=float(mesh["objective"]),
@@ -90,5 +122,7 @@ def recall(solution: Solution) -> tuple[OrderSearch, StageResult]:
         build_time=0.0,
         solve_time=0.0,
     )
-    energy = energy_per_metre(minimum.objective * search.walker.mass, search.problem.step_length_m)
-    return search, StageResult(collocation, collocation.unpack(x), minimum, energy)
+    problem = solution.problem
+    work = minimum.objective * problem.body.total_mass
+    energy = energy_per_metre(work, problem.step_length_m)
+    return StageResult(collocation, collocation.unpack(x), minimum, energy)

@@ -8,7 +8,7 @@ from ergowalk.gait.rhythm import Rhythm
 from ergowalk.problem import GaitProblem
 from ergowalk.solution import Solution
 from ergowalk.solution.progress import Progress, Report
-from ergowalk.solving.answer import describe, judged
+from ergowalk.solving.answer import dense_energy, describe, judged
 from ergowalk.solving.spline_answer import SplineAnswer, dense_curves, with_measures
 from ergowalk.solving.spline_ipopt import by_ipopt, ladder
 from ergowalk.solving.spline_options import SplineOptions
@@ -85,6 +85,7 @@ def finished(answer: SplineAnswer, solver: str, options: SplineOptions) -> Solut
         dataset,
         problem,
         programme.rhythm,
+        energy=dense_energy(dataset, problem.step_length_m),
         method="spline",
         status=_status(answer, options),
         history=answer.history,

@@ -141,25 +141,14 @@ class OrderSearch:
         mesh = self._mesh(start.times, COARSE)
         return self._run("from a gait", self.phased, mesh, start, _warm(1e-4, 1e-3))
 
-    def fits(self, before: StageResult) -> bool:
-        """Whether a stage of another problem has the same unknowns and rows.
-
-        Then its multipliers mean the same here.
-        """
-        mesh = before.collocation.mesh
-        own = Collocation(self.phased, mesh, before.points, self.store)
-        pairs = zip(own.kernels, before.collocation.kernels, strict=True)
-        return all(
-            here.labels == there.labels
-            and here.kernel.variables.numel() == there.kernel.variables.numel()
-            for here, there in pairs
-        )
-
     def continued(self, before: StageResult, times: Mapping[str, float]) -> StageResult:
-        """The gait of a neighbouring problem, from its point and multipliers, on its mesh."""
+        """From the point and the multipliers of a neighbour's gait, on its mesh.
+
+        ``before`` stands in the unknowns of this search.
+        """
         start = Start(before.trajectory.as_guess(), times)
-        mesh = before.collocation.mesh
-        return self._run("from a gait", self.phased, mesh, start, _warm(1e-6, 1e-6), before)
+        solver = _warm(1e-6, 1e-6)
+        return self._solve("from a gait", before.collocation, start, solver, before)
 
     def free_rhythm(
         self, held: StageResult, perturbation: Perturbation | None = None
@@ -221,6 +210,18 @@ class OrderSearch:
     ) -> StageResult:
         began = time.process_time()
         collocation = Collocation(phased, mesh, points, self.store)
+        self.effort.build_time += time.process_time() - began
+        return self._solve(stage, collocation, start, solver or Ipopt(), before)
+
+    def _solve(
+        self,
+        stage: str,
+        collocation: Collocation,
+        start: Start,
+        solver: Ipopt,
+        before: StageResult | None,
+    ) -> StageResult:
+        began = time.process_time()
         programme = collocation.programme
         x = collocation.pack(start.guess, start.times)
         _ = programme.oracle
@@ -232,7 +233,7 @@ class OrderSearch:
                 before.collocation, last.variable_multipliers, last.row_multipliers
             )
         monitor = self._monitor(stage, collocation.elements)
-        minimum = (solver or Ipopt()).minimise(programme, x, monitor, multipliers)
+        minimum = solver.minimise(programme, x, monitor, multipliers)
         self.effort.add(minimum)
         return StageResult(
             collocation, collocation.unpack(minimum.x), minimum, self._energy(minimum.objective)

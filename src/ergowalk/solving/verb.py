@@ -30,6 +30,7 @@ def solve(
     workers: int | None = None,
     progress: Report | None = None,
     smoothing: Smoothing | None = None,
+    recheck: bool = False,
 ) -> Solution:
     """Find the cheapest gait.
 
@@ -59,6 +60,10 @@ def solve(
         Called with a :class:`~ergowalk.solution.Progress` once an iteration.
     smoothing : Smoothing, optional
         Small costs of the collocation that single out one of many equal optima; not part of E.
+    recheck : bool
+        A gait found on the mesh of the ``start`` takes over what a finer mesh changed there, as
+        long as the audit accepts it and E differs by less than
+        :data:`~ergowalk.solving.check.NEIGHBOUR`; True solves the finer mesh anew instead.
 
     Returns
     -------
@@ -79,7 +84,7 @@ def solve(
         )
     if method == "spline":
         return solve_spline(problem, solver, spline or SplineOptions(), progress)
-    return solve_collocation(problem, smoothing, start, progress)
+    return solve_collocation(problem, smoothing, start, progress, recheck=recheck)
 
 
 def _check_method(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping
 from functools import cached_property
 
@@ -49,6 +50,18 @@ class Collocation:
     def elements(self) -> int:
         """Number of elements of all phases."""
         return sum(len(fractions) - 1 for fractions in self.mesh)
+
+    @cached_property
+    def signature(self) -> str:
+        """A digest of what the unknowns and rows of an element of each phase are.
+
+        Where it is the same, a point and its multipliers on one mesh mean the same.
+        """
+        kinds = [
+            (pk.kernel.name, pk.kernel.variables.numel(), pk.labels, pk.places.tolist())
+            for pk in self.kernels
+        ]
+        return hashlib.sha256(repr(kinds).encode()).hexdigest()[:16]
 
     @cached_property
     def programme(self) -> NonlinearProgramme:

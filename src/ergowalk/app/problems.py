@@ -89,10 +89,11 @@ def asked_problem(content: bytes) -> GaitProblem:
 def _object(content: bytes) -> dict[str, Any]:
     try:
         found = json.loads(content)
+        json.dumps(found, ensure_ascii=False).encode()  # half a letter is no text
     except (ValueError, RecursionError):
         found = None
     if not isinstance(found, dict):
-        raise ProblemError("not a JSON object", "send the form of the page")
+        raise ProblemError("not a JSON object of UTF-8 text", "send the form of the page")
     return found
 
 

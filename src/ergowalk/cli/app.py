@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from argparse import Namespace
 
-from ergowalk.app import Options, serve
+from ergowalk.app.options import Options
+from ergowalk.app.serving import serve
 from ergowalk.cli.streams import emit, note
 
 

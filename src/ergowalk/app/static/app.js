@@ -82,9 +82,8 @@ class ProblemForm {
       find("preset").selectedIndex = -1;
       find("file-note").textContent = `The form has the values of ${file.name}.`;
     } catch (error) {
-      find("file").value = "";
-      find("file-note").textContent = "";
-      this.refuse(error);
+      this.forgetFile();
+      this.refuse(Object.assign(error, { field: null, place: find("file") }));
     }
   }
 
@@ -136,17 +135,20 @@ class ProblemForm {
     return find("scaled").checked && this.known.size ? { problem, size } : { problem };
   }
 
-  /* Show why the server refused, beside the field that it names; null clears. */
+  /* Show why the server refused, below the field that it names; null clears. */
   refuse(error) {
     const note = find("refusal");
-    note.hidden = !error;
-    note.textContent = error ? error.message : "";
+    find("solve").before(note);
     for (const field of this.root.querySelectorAll("[aria-invalid]")) {
       field.removeAttribute("aria-invalid");
       if (field.getAttribute("aria-describedby") === "refusal") field.removeAttribute("aria-describedby");
     }
     const named = { height_m: find("height"), mass_kg: find("mass") };
     const field = error?.field && (this.field(error.field) ?? named[error.field.split(".").pop()]);
+    const place = error?.place ?? field;
+    if (place) (place.closest(".joints") ?? place.closest("label") ?? place).after(note);
+    note.hidden = !error;
+    note.textContent = error ? error.message : "";
     if (!field) return;
     field.closest("details")?.setAttribute("open", "");
     field.setAttribute("aria-invalid", "true");
@@ -202,6 +204,8 @@ class OpenSolves {
     this.jobs = jobs.filter((job) => job.state !== "done");
     find("solves").hidden = !this.jobs.length;
     keep(this.list, this.jobs, (job) => this.card(job), (card, job) => this.update(card, job));
+    if (this.reveal) this.list.lastElementChild?.scrollIntoView({ block: "nearest" });
+    this.reveal = false;
   }
 
   card(job) {
@@ -304,7 +308,6 @@ class GaitList {
       link.setAttribute("aria-describedby", name.id);
       card.querySelector(".downloads").append(link, " ");
     }
-    card.querySelector("details").hidden = !said.rows.length;
     for (const [label, text] of said.rows) {
       const row = card.querySelector("tbody").insertRow(), head = document.createElement("th");
       head.scope = "row";
@@ -407,7 +410,7 @@ async function begin() {
     try {
       await ask("POST", "/solves", JSON.stringify(asked), { "Content-Type": "application/json" });
       form.refuse(null);
-      find("solves").scrollIntoView({ block: "nearest" });
+      solves.reveal = true;
     } catch (error) {
       form.refuse(error);
     }

@@ -165,7 +165,7 @@ def test_an_uploaded_file_fills_the_form(browser: Browser) -> None:
         (b"step_length_m = -1\nstride_time_s = 1\n", "mine.toml: step_length_m = -1: should be"),
         (b"nonsense", "mine.toml: not valid TOML"),
         (b"\x89PNG\r\n", "mine.toml: not UTF-8 text (byte 0)"),
-        (GOOD.replace(b"winter-slow\"\nw", b"/etc/passwd\"\nw"), "the app opens none on this machi"),
+        (GOOD.replace(b'winter-slow"\nw', b'/etc/passwd"\nw'), "the app opens none on this machi"),
         (b"#" * 5000, "mine.toml: larger than 4 KiB; give a problem file"),
     ],
     ids=["value", "syntax", "picture", "path", "size"],

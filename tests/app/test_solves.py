@@ -25,7 +25,11 @@ def test_a_solve_goes_from_the_form_to_its_files() -> None:
         assert (done["id"], done["state"]) == (job, "done")
         assert done["said"]["label"] == "1: quick"
         assert done["title"] == "quick: step 0.76 m, stride 1.14 s, 1.33 m/s"
-        for file, kind in (("gait.nc", "netcdf"), ("report.html", "html"), ("problem.toml", "toml")):
+        for file, kind in (
+            ("gait.nc", "netcdf"),
+            ("report.html", "html"),
+            ("problem.toml", "toml"),
+        ):
             answer = browser.ask("GET", f"/solves/{job}/{file}")
             assert answer.status == 200
             assert answer.body.decode() == f"{file} of quick"
@@ -63,7 +67,9 @@ def test_a_cancelled_solve_and_its_children_end(
             assert (ended["state"], ended["message"]) == ("cancelled", "cancelled")
             assert gone(pid)
             assert gone(int(note.read_text()))
-            assert browser.ask("POST", f"/solves/{job}/cancel").status == 200  # once more is no harm
+            assert (
+                browser.ask("POST", f"/solves/{job}/cancel").status == 200
+            )  # once more is no harm
 
 
 @pytest.mark.parametrize(
@@ -261,8 +267,9 @@ def test_a_session_that_keeps_too_much_is_told_to_remove_something(
             page.ended()
             refused = browser.solve("quick")
         assert refused.status == 422
-        assert "that is all that there is room for; remove one from the list" in (
-            refused.json["error"]
+        assert (
+            "that is all that there is room for; remove one from the list"
+            in (refused.json["error"])
         )
 
 
@@ -292,4 +299,3 @@ def test_a_server_that_ends_takes_its_workers_and_files_along(
     assert time.monotonic() - began < 5
     assert gone(pid, within=0.5)
     assert list(tmp_path.iterdir()) == []
-

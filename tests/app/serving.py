@@ -14,10 +14,15 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
+import pytest
+
 from ergowalk.app.options import Options
 from ergowalk.app.problems import values_of
 from ergowalk.app.serving import bound_socket, served
 from ergowalk.problem import preset
+
+pytest.importorskip("starlette", reason="the extra 'app' is not installed")
+pytest.importorskip("uvicorn", reason="the extra 'app' is not installed")
 
 STAND_IN = (sys.executable, str(Path(__file__).with_name("stand_in.py")))
 

@@ -1,4 +1,4 @@
-"""A worker that solves nothing: the name of its problem says how it behaves. Starts in milliseconds.
+"""A worker that solves nothing and starts at once: the name of its problem says how it behaves.
 
 ``python stand_in.py [FOLDER]``: what it "finds" is a copy of the files of FOLDER, in which
 ``said.json`` is what a worker says of them.

@@ -13,17 +13,15 @@ from urllib.parse import urlsplit
 
 import pytest
 
-sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
-pytest.importorskip("starlette", reason="the extra 'app' is not installed")
-pytest.importorskip("uvicorn", reason="the extra 'app' is not installed")
-
 from ergowalk.app.results import store
 from ergowalk.body import Body
 from ergowalk.problem import preset
 from ergowalk.problem.files import problem_to_toml
 from ergowalk.solution import Solution
-from tests.app.serving import STAND_IN, app, gone
 
+from .serving import STAND_IN, app, gone
+
+sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 CHROMIUM = shutil.which("chromium")
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
 
@@ -59,7 +57,8 @@ def url(found: Path) -> Iterator[str]:
 class Visitor:
     """One person's browser at the app; complains if anything was complained of or asked elsewhere.
 
-    Unless asked otherwise the walkers wait to be started, which spares the processor. ``refusals`` counts the answers that the page rightly got other than 200.
+    Unless asked otherwise the walkers wait to be started, which spares the processor. ``refusals``
+    counts the answers that the page rightly got other than 200.
     """
 
     def __init__(self, chromium: Any, url: str, **context: Any) -> None:

@@ -12,11 +12,9 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("starlette", reason="the extra 'app' is not installed")
-pytest.importorskip("uvicorn", reason="the extra 'app' is not installed")
-
 import ergowalk
-from tests.app.serving import STAND_IN, Browser, gone
+
+from .serving import STAND_IN, Browser, gone
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks processes up")
 

@@ -10,14 +10,12 @@ from typing import Any
 
 import pytest
 
-pytest.importorskip("starlette", reason="the extra 'app' is not installed")
-pytest.importorskip("uvicorn", reason="the extra 'app' is not installed")
-
 from ergowalk.app.guard import Guard
 from ergowalk.app.options import Options
 from ergowalk.problem import preset
 from ergowalk.problem.files import problem_to_toml
-from tests.app.serving import Browser, app
+
+from .serving import Browser, app
 
 GOOD = problem_to_toml(preset("winter-slow")).encode()
 

@@ -8,10 +8,7 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("starlette", reason="the extra 'app' is not installed")
-pytest.importorskip("uvicorn", reason="the extra 'app' is not installed")
-
-from tests.app.serving import Browser, app, gone
+from .serving import Browser, app, gone
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "killpg"), reason="needs POSIX processes")
 

@@ -1,4 +1,4 @@
-"""The worker itself: what it leaves for the page, how it talks, and that it ends with its parent."""
+"""The worker: what it leaves for the page, how it talks, and that it ends with its parent."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ from ergowalk.app.results import DOWNLOADS, PAYLOAD, store
 from ergowalk.problem import preset
 from ergowalk.problem.files import problem_from_toml, problem_to_toml
 from ergowalk.solution import Progress, Solution
-from tests.app.serving import STAND_IN, gone
+
+from .serving import STAND_IN, gone
 
 
 @pytest.fixture(scope="module")

@@ -36,7 +36,7 @@ SAID = {
 def solve(order: dict[str, Any], tell: Tell) -> dict[str, Any]:
     name = re.findall(r'^name = "(.*)"', order["problem"], re.M)[0]
     tell({"progress": {"stage": "begun", "pid": os.getpid(), "iteration": 1, "energy": 50.0}})
-    BEHAVIOURS.get(name, lambda: None)()
+    BEHAVIOURS.get(name.split(" ")[0], lambda: None)()
     folder = Path(order["folder"])
     if len(sys.argv) > 1:
         shutil.copytree(sys.argv[1], folder, dirs_exist_ok=True)
@@ -51,7 +51,11 @@ def solve(order: dict[str, Any], tell: Tell) -> dict[str, Any]:
 
 
 def film(order: dict[str, Any], tell: Tell) -> dict[str, Any]:
-    (Path(order["folder"]) / "film.mp4").write_bytes(b"moving pictures")
+    folder = Path(order["folder"])
+    if folder.joinpath("problem.toml").read_text("utf-8").endswith("of long film"):
+        (folder / "film.pid").write_text(str(os.getpid()), "utf-8")
+        forever()
+    (folder / "film.mp4").write_bytes(b"moving pictures")
     return {}
 
 
@@ -80,7 +84,7 @@ def run_out_of_memory() -> None:
 
 BEHAVIOURS = {
     "endless": forever,
-    "with child": with_child,
+    "parent": with_child,
     "short": lambda: time.sleep(0.5),
     "killed": lambda: os.kill(os.getpid(), signal.SIGKILL),
     "quits": lambda: os._exit(3),

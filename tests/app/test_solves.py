@@ -55,7 +55,7 @@ def test_a_cancelled_solve_and_its_children_end(
     with app() as url:
         browser = Browser(url)
         with browser.page() as page:
-            job = browser.solve("with child").json["id"]
+            job = browser.solve("parent").json["id"]
             pid, note = page.pid(), tmp_path / "child"
             while not (note.exists() and note.read_text()):
                 time.sleep(0.02)
@@ -280,6 +280,35 @@ def test_a_film_is_made_when_it_is_asked_for() -> None:
             film = browser.ask("GET", f"/solves/{job}/film.mp4")
             assert (film.status, film.body) == (200, b"moving pictures")
             assert film.headers["content-disposition"] == 'attachment; filename="film.mp4"'
+
+
+def test_a_film_that_nobody_waits_for_any_longer_is_not_made(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+
+    def maker() -> int:
+        while not (notes := [n for n in tmp_path.rglob("film.pid") if n.read_text()]):
+            time.sleep(0.02)
+        pid = int(notes[0].read_text())
+        notes[0].unlink()
+        return pid
+
+    with app() as url:
+        browser = Browser(url)
+        with browser.page() as page:
+            job = browser.solve("long film").json["id"]
+            page.ended()
+        for _ in range(2):  # the first one does not hold up the second
+            connection = browser.connect()
+            connection.request("GET", f"/solves/{job}/film.mp4", headers=browser.headers())
+            pid = maker()
+            connection.close()
+            assert gone(pid)
+        last = browser.connect()
+        last.request("GET", f"/solves/{job}/film.mp4", headers=browser.headers())
+        pid = maker()
+    assert gone(pid, within=0.5)  # with the server
 
 
 def test_a_server_that_ends_takes_its_workers_and_files_along(

@@ -9,6 +9,7 @@ import time
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from ergowalk.app.film import FILM
 from ergowalk.app.options import Options
@@ -41,6 +42,7 @@ class Desk:
         self._waiting: list[Job] = []
         self._running: set[Job] = set()
         self._film = asyncio.Lock()
+        self._filming: asyncio.Task[dict[str, Any]] | None = None
 
     def submit(self, session: Session, problem: GaitProblem) -> Job:
         """A new solve of a session, begun as soon as a worker is free.
@@ -94,16 +96,20 @@ class Desk:
         """
         path = job.folder / FILM
         async with self._film:  # one at a time, beside the solves
+            if self.closing.is_set():
+                raise WorkerError("the server ends")
             if not path.exists():
                 order = {"task": "film", "folder": str(job.folder)}
-                await ask_worker(self._command, order, self.options.time_limit_s)
+                asking = ask_worker(self._command, order, self.options.time_limit_s)
+                self._filming = asyncio.create_task(asking)
+                await self._filming
         return path
 
     async def close(self) -> None:
         """End every solve at once, and forget all files."""
         self.closing.set()
         self._waiting.clear()
-        tasks = [job.task for job in self._running if job.task is not None]
+        tasks = [t for t in (self._filming, *(job.task for job in self._running)) if t is not None]
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)

@@ -163,12 +163,15 @@ async def _film(desk: Desk, request: Request) -> Response:
         raise NotThere("there is no film of that gait")
     making = asyncio.create_task(desk.film(job))
     gone = asyncio.create_task(_gone(request))
-    await asyncio.wait({making, gone}, return_when=asyncio.FIRST_COMPLETED)
-    gone.cancel()
-    if not making.done():
+    try:
+        await asyncio.wait({making, gone}, return_when=asyncio.FIRST_COMPLETED)
+        if gone.done() or desk.closing.is_set():
+            return Response(status_code=204)  # nobody reads it
+        await making
+    finally:
+        gone.cancel()
         making.cancel()
-        return Response(status_code=204)
-    await making
+        await asyncio.gather(gone, making, return_exceptions=True)
     return _file(job, FILM, "video/mp4", filename=FILM)
 
 

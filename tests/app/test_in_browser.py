@@ -153,6 +153,7 @@ def test_a_running_solve_is_shown_and_can_be_cancelled(visitor: Visitor) -> None
     process = pid(page)
     expect(page.locator(".iteration")).to_have_text("1")
     expect(page.locator(".energy")).to_have_text("50.00 J/m")
+    expect(page.locator("#open-solves li")).to_be_in_viewport()
     page.get_by_role("button", name="Cancel").click()
     expect(page.locator(".words")).to_have_text("No gait: cancelled.")
     assert gone(process)

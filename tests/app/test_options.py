@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import socket
-import sys
 from argparse import Namespace
 
 import pytest
@@ -111,8 +110,3 @@ def test_missing_packages_are_one_line_that_says_what_to_install(
         "ergowalk: the app needs starlette and uvicorn, which are not installed; run pip install "
         "'ergowalk[app]'\n"
     )
-
-
-def test_the_command_line_without_the_app_imports_no_server() -> None:
-    assert build_parser().parse_args(["presets"]).command == "presets"
-    assert "ergowalk.app.server" not in sys.modules or "uvicorn" in sys.modules

@@ -141,7 +141,8 @@ def test_a_full_queue_is_a_sentence_and_cancelling_makes_room() -> None:
             refused = browser.solve("endless")
             assert refused.status == 422
             assert refused.json["error"] == (
-                "1 solves wait, and the queue takes no more; try again when one of them has ended"
+                "the queue is full, as no more than 1 solves may wait; try again when one of them "
+                "has ended"
             )
             browser.ask("POST", f"/solves/{waiting}/cancel")
             assert browser.solve("endless").status == 200

@@ -54,7 +54,7 @@ class Desk:
         """
         if self._free() <= 0 and len(self._waiting) >= self.options.queue:
             raise InputError(
-                f"{len(self._waiting)} solves wait, and the queue takes no more",
+                f"the queue is full, as no more than {self.options.queue} solves may wait",
                 "try again when one of them has ended",
             )
         job = session.new_job(problem)

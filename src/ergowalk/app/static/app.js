@@ -204,14 +204,14 @@ class OpenSolves {
     this.jobs = jobs.filter((job) => job.state !== "done");
     find("solves").hidden = !this.jobs.length;
     keep(this.list, this.jobs, (job) => this.card(job), (card, job) => this.update(card, job));
-    if (this.reveal) this.list.lastElementChild?.scrollIntoView({ block: "nearest" });
-    this.reveal = false;
   }
 
   card(job) {
     const card = clone("open-solve"), title = card.querySelector(".title");
     title.textContent = `${job.number}: ${job.title}`;
     title.id = `solve-${job.number}`;
+    if (this.reveal) requestAnimationFrame(() => card.scrollIntoView({ block: "nearest" }));
+    this.reveal = false;
     const button = card.querySelector("button");
     button.setAttribute("aria-describedby", title.id);
     card.querySelector("progress").setAttribute("aria-describedby", title.id);
@@ -407,11 +407,12 @@ async function begin() {
   const act = (method, path) => ask(method, path).then(() => complain(null), complain);
   const form = new ProblemForm(find("form"), known, async (asked) => {
     find("solve").disabled = true;
+    solves.reveal = true; // its card may be here before the answer
     try {
       await ask("POST", "/solves", JSON.stringify(asked), { "Content-Type": "application/json" });
       form.refuse(null);
-      solves.reveal = true;
     } catch (error) {
+      solves.reveal = false;
       form.refuse(error);
     }
     find("solve").disabled = false;

@@ -220,6 +220,13 @@ def test_a_form_that_is_none_is_refused(browser: Browser) -> None:
         assert ";" in answer.json["error"]
 
 
+def test_a_small_limit_for_files_leaves_the_form_alone() -> None:
+    with app(upload_limit_kib=1) as url:
+        browser = Browser(url)
+        assert browser.solve("quick").status == 200
+        assert browser.solve("n" * 20_000).status == 422
+
+
 def test_a_refusal_names_its_field(browser: Browser) -> None:
     answer = browser.solve("quick", stride_time_s="soon")
     assert (answer.status, answer.json["field"]) == (422, "stride_time_s")

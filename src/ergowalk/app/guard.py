@@ -94,23 +94,25 @@ class Guard:
         return address.is_loopback or not self._loopback
 
 
-async def body_within(request: Request, options: Options) -> bytes:
+async def body_within(request: Request, options: Options, beyond: int = 0) -> bytes:
     """The body of a request, refused before it is read if it says that it is too large.
 
     Raises
     ------
     ProblemError
-        If it is larger than the options allow, or takes too long to arrive.
+        If it is more than ``beyond`` bytes larger than a problem file may be, or takes too long
+        to arrive.
     """
+    largest = options.upload_limit + beyond
     length = request.headers.get("content-length", "")
-    if length.isdigit() and int(length) > options.upload_limit:
+    if length.isdigit() and int(length) > largest:
         raise too_large(options)
     content = bytearray()
     try:
         async with asyncio.timeout(READING):
             async for part in request.stream():
                 content += part
-                if len(content) > options.upload_limit:
+                if len(content) > largest:
                     raise too_large(options)
     except (TimeoutError, ClientDisconnect):
         raise ProblemError("did not arrive", "send it again") from None

@@ -26,6 +26,9 @@ from ergowalk.errors import ErgowalkError, InputError
 
 UNKNOWN = "this page is no longer known to the server; load it again"
 
+FORM = 16384
+"""Bytes that a form may have beyond a problem file: every default is in it."""
+
 Handler = Callable[[Desk, Request], Awaitable[Response]]
 
 
@@ -125,7 +128,7 @@ async def _problem(desk: Desk, request: Request) -> Response:
 
 async def _solve(desk: Desk, request: Request) -> Response:
     session = _session_of(desk, request)
-    problem = asked_problem(await body_within(request, desk.options))
+    problem = asked_problem(await body_within(request, desk.options, FORM))
     return JSONResponse({"id": desk.submit(session, problem).id})
 
 

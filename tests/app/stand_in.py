@@ -28,7 +28,7 @@ SAID = {
     "viewable": False,
     "why": "it stands in for a gait",
     "rows": [["E", "48.00 J/m"]],
-    "film": True,
+    "film": "film.mp4",
     "files": ["gait.nc", "report.html", "problem.toml"],
 }
 
@@ -55,7 +55,7 @@ def film(order: dict[str, Any], tell: Tell) -> dict[str, Any]:
     if folder.joinpath("problem.toml").read_text("utf-8").endswith("of long film"):
         (folder / "film.pid").write_text(str(os.getpid()), "utf-8")
         forever()
-    (folder / "film.mp4").write_bytes(b"moving pictures")
+    (folder / order["name"]).write_bytes(b"moving pictures")
     return {}
 
 

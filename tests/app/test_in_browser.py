@@ -43,7 +43,7 @@ def chromium() -> Iterator[Any]:
 def found(paper_gait_file: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What the stand-in finds: a solved gait with all that belongs to it."""
     folder = tmp_path_factory.mktemp("found")
-    said = store(Solution.load(paper_gait_file), folder, 1) | {"film": True}
+    said = store(Solution.load(paper_gait_file), folder, 1) | {"film": "film.mp4"}
     (folder / "said.json").write_text(json.dumps(said), "utf-8")
     return folder
 

@@ -137,6 +137,7 @@ def test_the_body_is_scaled_to_height_and_mass() -> None:
     assert problem.body.trunk_mass_kg == pytest.approx(46.7 * 80 / 73.18)
     with pytest.raises(BodyError, match=r"^sex = 'x': no such table"):
         asked_problem(sized(height_m=1.8, mass_kg=80, sex="x"))
+    assert asked_problem(sized(height_m=1.8, mass_kg=80)) == problem
 
 
 @pytest.mark.usefixtures("scaling")

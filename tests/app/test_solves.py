@@ -276,10 +276,11 @@ def test_a_film_is_made_when_it_is_asked_for() -> None:
         browser = Browser(url)
         with browser.page() as page:
             job = browser.solve("quick").json["id"]
-            assert page.ended()["said"]["film"] is True
+            assert page.ended()["said"]["film"] == "film.mp4"
         for _ in range(2):
             film = browser.ask("GET", f"/solves/{job}/film.mp4")
             assert (film.status, film.body) == (200, b"moving pictures")
+            assert film.headers["content-type"] == "video/mp4"
             assert film.headers["content-disposition"] == 'attachment; filename="film.mp4"'
 
 

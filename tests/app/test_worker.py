@@ -6,13 +6,14 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 import ergowalk
-from ergowalk.app import results, worker
-from ergowalk.app.film import film_function
+from ergowalk.app import film, results, worker
+from ergowalk.app.film import film_name
 from ergowalk.app.results import DOWNLOADS, PAYLOAD, store
 from ergowalk.problem import preset
 from ergowalk.problem.files import problem_from_toml, problem_to_toml
@@ -33,7 +34,6 @@ def test_everything_that_the_page_offers_is_written(solution: Solution, tmp_path
     assert said["energy"] == solution.energy_per_metre
     assert [label for label, _ in said["rows"]][:2] == ["E", "with the limits"]
     assert said["files"] == list(DOWNLOADS)
-    assert said["film"] is (film_function() is not None)
     assert json.loads(json.dumps(said, allow_nan=False))
     stored = Solution.load(tmp_path / "gait.nc")
     assert stored.energy_per_metre == solution.energy_per_metre
@@ -49,7 +49,7 @@ def test_a_gait_that_cannot_be_shown_can_still_be_downloaded(
     lost = Solution(solution.dataset.drop_vars("joint_power").assign_attrs(acceptable=0))
     lost.__dict__["energy_by_joint"] = {"hip": 1.0}
     said = store(lost, tmp_path, 1)
-    assert said["acceptable"] is said["viewable"] is said["film"] is False
+    assert said["acceptable"] is said["viewable"] is False
     assert "joint_power" in said["why"]
     assert said["files"] == ["gait.nc", "problem.toml"]
 
@@ -69,6 +69,7 @@ def test_a_solve_is_an_order_carried_out(
     order = {"problem": problem_to_toml(preset("winter-fast")), "folder": tmp_path, "number": 1}
     said = worker.solve_task(order, told.append)
     assert said["label"].startswith("1: ")
+    assert said["film"] == film_name()
     stages = [t["progress"]["stage"] for t in told]
     assert stages[0] == "starting the solver"
     assert stages[-1] == "auditing and drawing"
@@ -105,14 +106,26 @@ def test_a_worker_ends_when_its_parent_is_gone() -> None:
     process.stdout.close()
 
 
-def test_a_film_is_offered_only_where_there_is_a_function_that_makes_it(
-    solution: Solution, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("installed", "name"),
+    [((), ""), (("ergowalk.film",), "film.gif"), (("ergowalk.film", "av"), "film.mp4")],
+)
+def test_a_film_is_offered_only_where_something_makes_it(
+    installed: tuple[str, ...], name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(results, "film_function", lambda: None)
-    assert store(solution, tmp_path, 1)["film"] is False
-    monkeypatch.setattr(
-        "ergowalk.app.film.film_function", lambda: lambda gait, film: film.write_bytes(b"film")
+    monkeypatch.setattr(film, "find_spec", lambda name: name if name in installed else None)
+    assert film_name() == name
+
+
+def test_a_film_is_made_from_what_the_viewer_shows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    maker = SimpleNamespace(
+        FilmOptions=lambda format: format,
+        film=lambda payloads, options: f"{options} of {payloads}".encode(),
     )
-    worker.film_task({"folder": str(tmp_path)}, lambda message: None)
-    assert (tmp_path / "film.mp4").read_bytes() == b"film"
+    monkeypatch.setattr(film, "import_module", lambda name: maker)
+    (tmp_path / PAYLOAD).write_text('{"label": "a gait"}', "utf-8")
+    worker.film_task({"folder": str(tmp_path), "name": "film.gif"}, lambda message: None)
+    assert (tmp_path / "film.gif").read_bytes() == b"gif of [{'label': 'a gait'}]"
     assert not list(tmp_path.glob("part-*"))

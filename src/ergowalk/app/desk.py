@@ -11,7 +11,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ergowalk.app.film import FILM
 from ergowalk.app.options import Options
 from ergowalk.app.process import COMMAND, WorkerError, ask_worker
 from ergowalk.app.sessions import Job, Session, Sessions, State
@@ -94,12 +93,13 @@ class Desk:
         WorkerError
             If it cannot be made.
         """
-        path = job.folder / FILM
+        name = str(job.said["film"])
+        path = job.folder / name
         async with self._film:  # one at a time, beside the solves
             if self.closing.is_set():
                 raise WorkerError("the server ends")
             if not path.exists():
-                order = {"task": "film", "folder": str(job.folder)}
+                order = {"task": "film", "folder": str(job.folder), "name": name}
                 asking = ask_worker(self._command, order, self.options.time_limit_s)
                 self._filming = asyncio.create_task(asking)
                 await self._filming

@@ -2,28 +2,36 @@
 
 from __future__ import annotations
 
+import json
 import os
-from collections.abc import Callable
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 
-FILM = "film.mp4"
-"""What a film is called in the folder of its gait, and when it is downloaded."""
+from ergowalk.app.results import PAYLOAD
+
+MAKER = "ergowalk.film"
+"""The room that makes films."""
 
 
-def film_function() -> Callable[[Path, Path], object] | None:
-    """What turns a gait file into a film, or None where there is nothing that does."""
-    try:
-        from ergowalk.plots import write_film  # type: ignore[attr-defined]
-    except ImportError:
-        return None
-    function: Callable[[Path, Path], object] = write_film
-    return function
+def film_name() -> str:
+    """What a film is called in the folder of its gait and on its way out; "" if none is made."""
+    if find_spec(MAKER) is None:
+        return ""
+    return "film.gif" if find_spec("av") is None else "film.mp4"
 
 
-def make_film(folder: str | Path) -> None:
-    """Write the film of the gait in a folder beside it."""
-    write = film_function()
-    assert write is not None, "the page offers a film only where there is a function"
-    draft = Path(folder) / f"part-{FILM}"
-    write(Path(folder) / "gait.nc", draft)
-    os.replace(draft, Path(folder) / FILM)
+def make_film(folder: str | Path, name: str) -> None:
+    """Write the film of the gait in a folder beside it.
+
+    Raises
+    ------
+    InputError
+        If it cannot be made.
+    """
+    maker, place = import_module(MAKER), Path(folder)
+    payload = json.loads((place / PAYLOAD).read_text("utf-8"))
+    options = maker.FilmOptions(format=Path(name).suffix[1:])
+    draft = place / f"part-{name}"
+    draft.write_bytes(maker.film([payload], options))
+    os.replace(draft, place / name)

@@ -70,7 +70,7 @@ def asked_problem(content: bytes) -> GaitProblem:
     """The problem that a page asks to be solved: JSON with ``problem`` and perhaps ``size``.
 
     ``problem`` has the keys and values of a problem file; ``size`` has ``height_m``, ``mass_kg``
-    and ``sex`` of a person whom the body is scaled to.
+    and perhaps ``sex`` of a person whom the body is scaled to.
 
     Raises
     ------
@@ -118,6 +118,6 @@ def _scaled(size: Any) -> Body:
     for name, value in numbers.items():
         if not isinstance(value, int | float) or isinstance(value, bool):
             raise ProblemError("should be a valid number", "give one", field=name, value=value)
-    sex = size.get("sex", "male")
-    body: Body = scale(*numbers.values(), sex=sex)
+    chosen = {"sex": size["sex"]} if "sex" in size else {}
+    body: Body = scale(**numbers, **chosen)
     return body

@@ -6,7 +6,6 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ergowalk.app.film import film_function
 from ergowalk.app.problems import short
 from ergowalk.errors import InputError
 
@@ -39,8 +38,8 @@ def store(solution: Solution, folder: str | Path, number: int) -> dict[str, Any]
     -------
     dict
         ``label``, ``acceptable``, ``status`` (a sentence), ``energy`` [J/m], ``rows`` (label and
-        text of each headline figure), ``files``, ``film`` (whether one can be made), ``viewable``
-        and ``why`` not: a gait that did not converge may not bear every look.
+        text of each headline figure), ``files``, ``viewable`` and ``why`` not: a gait that did not
+        converge may not bear every look.
     """
     place = Path(folder)
     solution.save(place / GAIT)
@@ -54,11 +53,10 @@ def store(solution: Solution, folder: str | Path, number: int) -> dict[str, Any]
         "viewable": False,
         "why": "",
         "rows": [],
-        "film": False,
     }
     try:
         said["rows"] = _show(solution, place, label)
-        said |= {"viewable": True, "film": film_function() is not None}
+        said["viewable"] = True
     except InputError as error:
         said["why"] = str(error)
     said["files"] = [name for name in DOWNLOADS if (place / name).exists()]

@@ -15,7 +15,6 @@ from starlette.routing import Route
 
 from ergowalk.app.desk import Desk
 from ergowalk.app.events import EventStream
-from ergowalk.app.film import FILM
 from ergowalk.app.guard import Guard, body_within, too_large
 from ergowalk.app.options import Options
 from ergowalk.app.problems import asked_problem, form, short, uploaded_problem, values_of
@@ -44,7 +43,6 @@ def application(desk: Desk) -> Starlette:
         Route("/solves/{id}/cancel", _bound(desk, _cancel), methods=["POST"]),
         Route("/solves/{id}/problem", _bound(desk, _values)),
         Route("/solves/{id}/payload", _bound(desk, _payload)),
-        Route(f"/solves/{{id}}/{FILM}", _bound(desk, _film)),
         Route("/solves/{id}/{file}", _bound(desk, _download)),
     ]
     return Starlette(routes=routes, middleware=[Middleware(Guard, options=desk.options)])
@@ -154,16 +152,15 @@ async def _payload(desk: Desk, request: Request) -> Response:
 
 async def _download(desk: Desk, request: Request) -> Response:
     job, name = _job_of(desk, request), request.path_params["file"]
+    if name and name == job.said.get("film"):
+        return await _film(desk, request, job)
     if name not in DOWNLOADS:
         raise NotThere("there is no such file")
     return _file(job, name, DOWNLOADS[name], filename=name)
 
 
-async def _film(desk: Desk, request: Request) -> Response:
+async def _film(desk: Desk, request: Request, job: Job) -> Response:
     """The film of a gait; its making ends when nobody waits for it any longer."""
-    job = _job_of(desk, request)
-    if not job.said.get("film"):
-        raise NotThere("there is no film of that gait")
     making = asyncio.create_task(desk.film(job))
     gone = asyncio.create_task(_gone(request))
     try:
@@ -175,7 +172,8 @@ async def _film(desk: Desk, request: Request) -> Response:
         gone.cancel()
         making.cancel()
         await asyncio.gather(gone, making, return_exceptions=True)
-    return _file(job, FILM, "video/mp4", filename=FILM)
+    name = str(job.said["film"])
+    return _file(job, name, filename=name)
 
 
 async def _gone(request: Request) -> None:
@@ -183,7 +181,9 @@ async def _gone(request: Request) -> None:
         pass
 
 
-def _file(job: Job, name: str, media_type: str, filename: str | None = None) -> Response:
+def _file(
+    job: Job, name: str, media_type: str | None = None, filename: str | None = None
+) -> Response:
     """A file of a result that is complete; ``name`` is one of ours, never a page's."""
     path = job.folder / name
     if job.state in OPEN or not path.is_file():

@@ -39,7 +39,11 @@ OUT_OF_MEMORY = "the memory ran out; end other programs, or solve fewer gaits at
 
 
 def solve_task(order: dict[str, Any], tell: Tell) -> dict[str, Any]:
-    """Solve the problem of an order and leave everything that the page shows in its folder."""
+    """Solve the problem of an order and leave everything that the page shows in its folder.
+
+    Beside what is said of the result: ``film``, the name of a film that can be asked for, or "".
+    """
+    from ergowalk.app.film import film_name
     from ergowalk.app.results import store
     from ergowalk.problem.files import problem_from_toml
 
@@ -49,14 +53,15 @@ def solve_task(order: dict[str, Any], tell: Tell) -> dict[str, Any]:
 
     solution = solve(problem, progress=_teller(tell))
     tell({"progress": {"stage": "auditing and drawing"}})
-    return store(solution, order["folder"], order["number"])
+    said = store(solution, order["folder"], order["number"])
+    return {**said, "film": film_name() if said["viewable"] else ""}
 
 
 def film_task(order: dict[str, Any], tell: Tell) -> dict[str, Any]:
     """Make the film of the gait in the folder of an order."""
     from ergowalk.app.film import make_film
 
-    make_film(order["folder"])
+    make_film(order["folder"], order["name"])
     return {}
 
 

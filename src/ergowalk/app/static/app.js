@@ -131,7 +131,8 @@ class ProblemForm {
       const value = kind === "bound" && !text ? "off" : kind === "text" ? field.value : spoken(text);
       set(problem, field.dataset.path, value);
     }
-    const size = { height_m: spoken(find("height").value), mass_kg: spoken(find("mass").value), sex: find("sex").value };
+    const size = { height_m: spoken(find("height").value), mass_kg: spoken(find("mass").value) };
+    if (find("sex").value) size.sex = find("sex").value;
     return find("scaled").checked && this.known.size ? { problem, size } : { problem };
   }
 
@@ -302,9 +303,9 @@ class GaitList {
       said.acceptable ? "" : `Not acceptable: ${said.status}.`,
       said.viewable ? "" : `It cannot be shown: ${said.why}.`,
     ].join(" ").trim();
-    for (const file of [...said.files, ...(said.film ? ["film.mp4"] : [])]) {
+    for (const file of [...said.files, ...(said.film ? [said.film] : [])]) {
       const link = Object.assign(document.createElement("a"), { href: `/solves/${id}/${file}`, download: file });
-      link.textContent = file === "film.mp4" ? "film.mp4 (takes a while)" : file;
+      link.textContent = file === said.film ? `${file} (takes a while)` : file;
       link.setAttribute("aria-describedby", name.id);
       card.querySelector(".downloads").append(link, " ");
     }

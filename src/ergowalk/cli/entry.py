@@ -91,6 +91,13 @@ def _init(arguments: Namespace) -> int:
     return ACCEPTABLE
 
 
+def _app(arguments: Namespace) -> int:
+    from ergowalk.cli.app import run_app
+
+    run_app(arguments)
+    return ACCEPTABLE
+
+
 COMMANDS: dict[str, Callable[[Namespace], int]] = {
     "solve": _solve,
     "audit": _audit,
@@ -99,4 +106,5 @@ COMMANDS: dict[str, Callable[[Namespace], int]] = {
     "report": _report,
     "presets": _presets,
     "init": _init,
+    "app": _app,
 }

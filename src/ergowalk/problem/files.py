@@ -42,13 +42,7 @@ def read_problem(path: str | Path) -> GaitProblem:
     """
     path = Path(path)
     try:
-        text = path.read_bytes().decode("utf-8-sig")  # some editors put a byte order mark
-    except UnicodeDecodeError as error:
-        raise ProblemError(
-            f"not UTF-8 text (byte {error.start})",
-            "save the problem file as UTF-8",
-            file=str(path),
-        ) from None
+        content = path.read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a null byte in the name
         reason = getattr(error, "strerror", None) or str(error)
         raise ProblemError(
@@ -56,12 +50,25 @@ def read_problem(path: str | Path) -> GaitProblem:
             "give a problem file; 'ergowalk init -o FILE' writes one",
             file=str(path),
         ) from None
-    problem = problem_from_toml(text, file=str(path), folder=path.absolute().parent)
+    problem = problem_from_bytes(content, file=str(path), folder=path.absolute().parent)
     try:
         problem.human()
     except InputError as error:
         raise error.located(str(path)) from None
     return problem
+
+
+def problem_from_bytes(
+    content: bytes, file: str | None = None, folder: Path | None = None
+) -> GaitProblem:
+    """As :func:`problem_from_toml`, for the bytes of a file, which must be UTF-8 text."""
+    try:
+        text = content.decode("utf-8-sig")  # some editors put a byte order mark
+    except UnicodeDecodeError as error:
+        raise ProblemError(
+            f"not UTF-8 text (byte {error.start})", "save the problem file as UTF-8", file=file
+        ) from None
+    return problem_from_toml(text, file=file, folder=folder)
 
 
 def problem_from_toml(
@@ -84,13 +91,17 @@ def problem_from_toml(
         As :func:`read_problem`, except for the table of human data.
     """
     try:
-        data = _parsed(text)
-        for name, field in GaitProblem.model_fields.items():
-            if field.exclude and name in data:
-                raise ProblemError("unknown key", "remove it", field=name)
-        return GaitProblem(**data, folder=folder)
+        return problem_from_values(_parsed(text), folder)
     except InputError as error:
         raise (error.located(file) if file is not None else error) from None
+
+
+def problem_from_values(values: dict[str, Any], folder: Path | None = None) -> GaitProblem:
+    """The problem of the keys and values that a problem file may hold; errors as in one."""
+    for name, field in GaitProblem.model_fields.items():
+        if field.exclude and name in values:
+            raise ProblemError("unknown key", "remove it", field=name)
+    return GaitProblem(**values, folder=folder)
 
 
 def problem_to_toml(problem: GaitProblem, commented: bool = False) -> str:

@@ -2,12 +2,14 @@
 
 /* One viewer of gaits. `root` is the section of viewer.html, `gaits` are the payloads of
    payload.py. Gaits are laid over each other at the same fraction of their strides; `position`
-   counts strides from the beginning of the film. */
+   counts strides from the beginning of the film. Returns a function that ends the viewer, for a page
+   that shows other gaits later. */
 function ergowalkViewer(root, gaits) {
   const find = (name) => root.querySelector("." + name);
   const play = find("play"), speed = find("speed"), strides = find("strides");
   const scrub = find("scrub"), clock = find("clock");
   const shown = gaits.map(() => true);
+  const end = new AbortController(), untilEnd = { signal: end.signal };
   let position = 0, playing = false, last = 0, told = 0, stale = true;
 
   const stage = new WalkStage(find("stage"), root, gaits);
@@ -55,6 +57,7 @@ function ergowalkViewer(root, gaits) {
   }
 
   function onFrame(now) {
+    if (end.signal.aborted) return;
     const passed = Math.min((now - last) / 1000, 0.1); // a tab that was hidden goes on where it was
     last = now;
     if (playing) {
@@ -125,7 +128,7 @@ function ergowalkViewer(root, gaits) {
     else if (event.key === "ArrowLeft") setPlaying(false), seek(position - step);
     else return;
     event.preventDefault();
-  });
+  }, untilEnd);
   onDrag(find("stage"), (event, from) => {
     setPlaying(false);
     seek(from.position + (event.clientX - from.x) / from.width);
@@ -137,8 +140,9 @@ function ergowalkViewer(root, gaits) {
       seek(Math.min(Math.floor(position), count() - 1) + Math.max(0, Math.min(1, fraction)));
     }, () => position);
   }
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", resize);
-  new ResizeObserver(resize).observe(find("stage"));
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", resize, untilEnd);
+  const sizes = new ResizeObserver(resize);
+  sizes.observe(find("stage"));
 
   scrub.max = count();
   setVisible();
@@ -148,6 +152,10 @@ function ergowalkViewer(root, gaits) {
     last = now;
     onFrame(now);
   });
+  return () => {
+    end.abort();
+    sizes.disconnect();
+  };
 }
 
 /* Call `moved` while a pointer, mouse or finger, is held down on an element. */

@@ -1,0 +1,1 @@
+"""A local web app: set a problem, watch its solve, see the walker, lay gaits over each other."""

@@ -105,7 +105,9 @@ class Person(Value):
     @property
     def words(self) -> str:
         """The person in words, for a comment."""
-        measured = [f"{field} {value:g}" for field in MEASURED.values() if (value := self._of(field))]
+        measured = [
+            f"{field} {value:g}" for field in MEASURED.values() if (value := self._of(field))
+        ]
         table = {"dempster": "Dempster's", "deleva": f"de Leva's {self._sex}"}[self._table]
         told = f"; measured: {', '.join(measured)}" if measured else ""
         return f"{self.height_m:g} m, {self.mass_kg:g} kg, {table} table{told}"
@@ -191,13 +193,13 @@ class Person(Value):
         return self
 
     def _check_foot(self) -> None:
-        ball, foot = self.length("heel_to_ball"), self.length("foot_length")
-        if not self.length("ankle_ahead_of_heel") < ball < foot:
+        ankle, ball, foot = map(self.length, ("ankle_ahead_of_heel", "heel_to_ball", "foot_length"))
+        if not ankle < ball < foot:
             raise invalid(
                 "heel_to_ball_m",
                 round(ball, 4),
-                f"must lie between the ankle at {self.length('ankle_ahead_of_heel'):.3f} m and the toe "
-                f"tip at {foot:.3f} m from the heel",
+                f"must lie between the ankle at {ankle:.3f} m and the toe tip at {foot:.3f} m from "
+                "the heel",
                 "give ankle_ahead_of_heel_m, heel_to_ball_m and foot_length_m of one foot",
             )
 

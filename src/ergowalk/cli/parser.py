@@ -9,6 +9,7 @@ from typing import Any, NoReturn
 from ergowalk import __version__
 from ergowalk.errors import InputError
 
+FORMATS = ("csv", "mot", "grf", "sto", "trc", "mjcf", "loads")
 METHODS = ("collocation", "spline")
 SOLVERS = ("ipopt", "rosenbrock")
 ASKED = ("paper", "everything")
@@ -57,6 +58,7 @@ def build_parser() -> Parser:
     _add_compare(commands)
     _add_price(commands)
     _add_report(commands)
+    _add_export(commands)
     _add_presets(commands)
     _add_init(commands)
     return parser
@@ -215,6 +217,47 @@ def _add_report(commands: Any) -> None:
         type=_path,
         metavar="FILE",
         help="the page; a file there is replaced (default: report.html beside the first gait)",
+    )
+    _add_json(parser)
+
+
+def _add_export(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "export",
+        "write a stored gait for other software",
+        "CSV of every curve; for OpenSim coordinates and ground reactions (.mot) and joint moments "
+        "(.sto) as its model gait10dof18musc has them; joint centres (.trc); the body for MuJoCo "
+        "(.xml).",
+    )
+    parser.add_argument("gait", type=_path, metavar="GAIT.nc", help="a stored gait")
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=_path,
+        metavar="PATH",
+        help="a file, whose suffix names its format, or a folder for all of them; files there "
+        "are replaced (default: folder export beside the gait)",
+    )
+    parser.add_argument(
+        "--format",
+        action="append",
+        choices=FORMATS,
+        help="this format, whatever the suffix; in a folder, only the formats asked for",
+    )
+    parser.add_argument(
+        "--rate",
+        type=float,
+        default=200.0,
+        metavar="HZ",
+        help="samples per second of .mot, .sto and .trc (default: 200)",
+    )
+    parser.add_argument(
+        "--strides",
+        type=int,
+        default=1,
+        metavar="N",
+        help="strides in .mot, .sto and .trc, each a stride length further on (default: 1)",
     )
     _add_json(parser)
 

@@ -63,7 +63,7 @@ def test_a_named_folder_takes_all_or_what_is_asked_for(here):
 def test_the_name_of_a_file_says_its_format(here, output, format_):
     assert here("export", "gait/gait.nc", "-o", output).status == 0
     dataset = Solution.load("gait/gait.nc").dataset
-    expected = FORMATS[format_].write(dataset, RATE, STRIDES)
+    expected = FORMATS[format_].text(dataset, RATE, STRIDES)
     assert Path(output).read_text("utf-8") == expected
     assert names(".") == sorted(["gait", output])
 

@@ -18,7 +18,7 @@ class Export:
         self.text = cache(self._text)
 
     def _text(self, name: str, rate: float = 200.0, strides: int = 1) -> str:
-        return FORMATS[name].write(self.gait, rate, strides)
+        return FORMATS[name].text(self.gait, rate, strides)
 
 
 @pytest.fixture(scope="package")

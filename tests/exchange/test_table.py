@@ -53,7 +53,7 @@ def test_contact_is_told_in_words(export):
 def test_labels_in_another_order_change_nothing(export):
     gait = export.gait
     turned = gait.isel(leg=[1, 0], axis=[1, 0], joint=[3, 1, 0, 2])
-    written = read_csv(FORMATS["csv"].write(turned, 200.0, 1))
+    written = read_csv(FORMATS["csv"].text(turned, 200.0, 1))
     expected = read_csv(export.text("csv"))
     assert {k: written[k] for k in expected} == expected
 
@@ -62,4 +62,4 @@ def test_a_gait_without_a_variable_is_refused(export):
     broken: xr.Dataset = export.gait.drop_vars("joint_moment")
     for name in ("csv", "sto"):
         with pytest.raises(GaitFileError, match="joint_moment: must be there as numbers over time"):
-            FORMATS[name].write(broken, 200.0, 1)
+            FORMATS[name].text(broken, 200.0, 1)

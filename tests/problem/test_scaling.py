@@ -66,6 +66,14 @@ def test_a_person_in_a_file_is_the_body_and_is_written_as_the_body():
     assert problem_from_toml(text) == problem
 
 
+@given(height=st.floats(1.2, 2.2), mass=st.floats(30, 150), sex=st.sampled_from([None, "female"]))
+def test_a_scaled_problem_survives_a_file(height, mass, sex):
+    problem = for_person(preset("winter-fast"), Person(height_m=height, mass_kg=mass, sex=sex))
+    text = problem_to_toml(problem, commented=True, remark="some words " * 30)
+    assert problem_from_toml(text) == problem
+    assert problem_to_toml(problem_from_toml(text)) == problem_to_toml(problem)
+
+
 def test_keys_of_the_body_go_before_the_person():
     text = MINIMAL + PERSON + "[body]\nthigh_mass_kg = 7.0\ngravity_m_s2 = 3.7\n"
     expected = Body.from_height_mass(1.6, 55, "female")

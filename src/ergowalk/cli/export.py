@@ -41,7 +41,7 @@ def run_export(arguments: Namespace) -> None:
         if (folder / name).exists() and (folder / name).samefile(path):
             raise OutputError("is the gait", "choose another file with -o", file=str(folder / name))
         try:
-            texts[name] = format_.write(solution.dataset, arguments.rate, arguments.strides)
+            texts[name] = format_.text(solution.dataset, arguments.rate, arguments.strides)
         except InputError as error:
             raise _told(error, path) from None
     with result_folder(folder, texts) if _is_folder(arguments.output) else nullcontext():

@@ -9,6 +9,7 @@ import xarray as xr
 
 from ergowalk.io import opensim
 from ergowalk.io.mjcf import mjcf
+from ergowalk.io.sampling import RATE, STRIDES
 from ergowalk.io.table import csv_table
 from ergowalk.io.trc import trc
 
@@ -29,6 +30,25 @@ class Format:
     summary: str
     sampled: bool
     write: Writer
+
+    def text(self, dataset: xr.Dataset, rate: float = RATE, strides: int = STRIDES) -> str:
+        """The file of a gait.
+
+        Parameters
+        ----------
+        dataset : xarray.Dataset
+            A gait in the format of ``gait.nc``.
+        rate : float
+            Samples per second, where that matters.
+        strides : int
+            Strides, each a stride length further on, where that matters.
+
+        Raises
+        ------
+        GaitFileError, BodyError, InputError
+            If the gait cannot be used, or rate or strides are out of range.
+        """
+        return self.write(dataset, rate, strides)
 
     @property
     def suffix(self) -> str:

@@ -297,10 +297,10 @@ def test_the_schema_takes_every_written_file_and_no_unknown_key():
     for text, match in (
         ("step_lenght_m = 0.7\n" + MINIMAL, "'step_lenght_m' was unexpected"),
         (person + "heigth_m = 2\n", "'heigth_m' was unexpected"),
-        (MINIMAL + "[body]\nthigh_mass_kg = -8", "-8 is less than"),
+        (MINIMAL + "[body]\nthigh_mass_kg = -8", "-8 is (less than|not valid)"),
         (MINIMAL + "folder = '.'", "'folder' was unexpected"),
         ("stride_time_s = 1.1", "'step_length_m' is a required property"),
-        (MINIMAL + "[limits]\nfriction_coefficient = 'of'", "'off' was expected"),
+        (MINIMAL + "[limits]\nfriction_coefficient = 'of'", "'off' was expected|'of' is not valid"),
     ):
         with pytest.raises(jsonschema.ValidationError, match=match):
             jsonschema.validate(tomllib.loads(text), schema)

@@ -122,6 +122,7 @@ def _leg(trunk: Xml.Element, name: str, leg: LegParameters, parts: RigidLeg) -> 
     _contact(foot, f"{name}_metatarsal", ball)
     _drawn(foot, ball, THICKNESS / 2)
     _drawn(foot, heel, THICKNESS / 2)
+    _drawn(foot, ball, THICKNESS / 4, heel)
     toes = _hinged(foot, f"{name}_toes", f"{name}_metatarsal", ball)
     _point_mass(toes, TOE_MASS)
     tip = (leg.toe_length, 0, 0)
@@ -158,8 +159,13 @@ def _contact(body: Xml.Element, name: str, place: Sequence[float]) -> None:
     _add(body, "geom", type="sphere", pos=_text(place), size=_text((CONTACT_RADIUS,)), contype="1")
 
 
-def _drawn(body: Xml.Element, end: Sequence[float], radius: float = THICKNESS) -> None:
-    line = _text((0, 0, 0, *end))
+def _drawn(
+    body: Xml.Element,
+    end: Sequence[float],
+    radius: float = THICKNESS,
+    start: Sequence[float] = (0, 0, 0),
+) -> None:
+    line = _text((*start, *end))
     _add(body, "geom", type="capsule", fromto=line, size=_text((radius,)))
 
 

@@ -130,6 +130,9 @@ def _for_toml(schema: dict[str, Any]) -> dict[str, Any]:
                 del field["default"]
                 if len(field["anyOf"]) == 1:
                     field |= field.pop("anyOf")[0]
+            for choice in field.get("anyOf", ()):
+                if "const" in choice:
+                    choice.pop("enum", None)  # said twice by older pydantic
     return schema
 
 

@@ -1,7 +1,7 @@
 """Solves what the explanations quote, and puts the tables into the pages: ``<!-- study: NAME -->``.
 
-``python scripts/studies.py [NAME ...]`` takes minutes for each table. All with the printed rhythm,
-which leaves one phase order and the fewest local optima.
+``python scripts/studies.py [NAME ...]`` takes minutes for each table. All but the bodies with the
+printed rhythm, which leaves one phase order and the fewest local optima.
 """
 
 from __future__ import annotations
@@ -11,7 +11,9 @@ from functools import cache
 
 import ergowalk
 from blocks import table, write_studies
+from ergowalk.anthropometry import Person
 from ergowalk.problem import GaitProblem, JointBounds
+from ergowalk.problem.scaling import for_person
 
 PRINTED = ergowalk.preset("berbyuk2002-rhythm")
 
@@ -78,6 +80,31 @@ def foot_length() -> str:
     return table(("l_h [m]", "ankle height [m]", "E [J/m]", "acceptable"), rows)
 
 
+def bodies() -> str:
+    """E of people of several sizes, as ``ergowalk init`` states their problems."""
+    people = (
+        Person(height_m=1.55, mass_kg=50, sex="female"),
+        Person(height_m=1.75, mass_kg=72, sex="male"),
+        Person(height_m=1.75, mass_kg=72),
+        Person(height_m=1.95, mass_kg=100, sex="male"),
+    )
+    rows = []
+    for person in people:
+        found = solution(for_person(ergowalk.preset("berbyuk2002"), person))
+        problem = found.problem
+        rows.append(
+            (
+                person.words,
+                f"{problem.step_length_m:g}",
+                f"{problem.stride_time_s:g}",
+                _energies(found)[0],
+                f"{found.cost_of_transport:.3f}",
+                "accepted" if found.audit().accepted else "failed",
+            )
+        )
+    return table(("person", "L [m]", "T [s]", "E [J/m]", "E / M g", "audit"), rows)
+
+
 def _on_meshes(found: ergowalk.Solution) -> str:
     cells = [f"{m['energy_per_metre']:.1f} on {m['elements']}" for m in found.mesh_history]
     return ", ".join(cells)
@@ -97,6 +124,7 @@ STUDIES = {
     "moment rate": moment_rate,
     "landing": landing,
     "foot length": foot_length,
+    "bodies": bodies,
 }
 
 

@@ -1,7 +1,7 @@
 """Writes the reference pages from the code: ``python scripts/write_reference.py``.
 
-Everything between ``<!-- generated: NAME -->`` and ``<!-- end -->`` comes from here, and a test
-compares it with what the code says now.
+Everything between ``<!-- generated: NAME -->`` and ``<!-- end -->`` comes from here, and the JSON
+schema of problem files too; a test compares them with what the code says now.
 """
 
 from __future__ import annotations
@@ -9,18 +9,19 @@ from __future__ import annotations
 import argparse
 import importlib
 import inspect
+import json
 import os
 import re
 from collections.abc import Callable
 from functools import cached_property
 
 import ergowalk
-from blocks import fenced, fill, pages, table
+from blocks import ROOT, fenced, fill, pages, table
 from ergowalk.audit import residuals
 from ergowalk.audit.report import Residual
 from ergowalk.cli.parser import build_parser
 from ergowalk.problem import DEFAULT_PRESET, PRESETS, preset
-from ergowalk.problem.files import problem_to_toml
+from ergowalk.problem.files import json_schema, problem_to_toml
 from ergowalk.quantities import QUANTITIES
 
 API = {
@@ -29,11 +30,25 @@ API = {
     "audit": "ergowalk.audit.audit",
     "AuditReport": "ergowalk.audit.AuditReport",
     "compare": "ergowalk.comparison.compare",
+    "Person": "ergowalk.anthropometry.Person",
+    "for_person": "ergowalk.problem.scaling.for_person",
+    "Format": "ergowalk.io.Format",
+    "body_mjcf": "ergowalk.io.body_mjcf",
     "write_figures": "ergowalk.plots.write_figures",
     "problem_to_toml": "ergowalk.problem.files.problem_to_toml",
+    "json_schema": "ergowalk.problem.files.json_schema",
     "casadi_functions": "ergowalk.mechanics.symbolic.casadi_functions",
 }
 """What the page on the Python API shows, and where users import it from."""
+
+
+SCHEMA = ROOT / "docs" / "reference" / "problem.schema.json"
+"""The JSON schema of problem files, for editors."""
+
+
+def schema() -> str:
+    """Text of :data:`SCHEMA`."""
+    return json.dumps(json_schema(), indent=2) + "\n"
 
 
 def generated() -> dict[str, str]:
@@ -127,6 +142,7 @@ def main() -> None:
     for page in pages():
         if fill(page, "generated", texts):
             print(f"wrote {page.name}")
+    SCHEMA.write_text(schema(), "utf-8")
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import doctest
 import importlib
+import json
 import re
 import shlex
 from pathlib import Path
@@ -169,6 +170,8 @@ def test_generated_blocks_are_what_the_code_says() -> None:
     assert set(shown) == set(texts)
     stale = [name for name, text in texts.items() if plain_help(text) != plain_help(shown[name])]
     assert stale == [], "run python scripts/write_reference.py"
+    stored = json.loads(write_reference.SCHEMA.read_text("utf-8"))
+    assert stored == json.loads(write_reference.schema())
 
 
 def test_filling_a_block_replaces_its_text_and_nothing_else(tmp_path: Path) -> None:

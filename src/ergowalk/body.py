@@ -15,6 +15,7 @@ from typing import Any, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from ergowalk.anthropometry import Person
 from ergowalk.errors import BodyError
 from ergowalk.values import PositiveFloat, Value, invalid
 
@@ -113,6 +114,42 @@ class Body(Value):
     def by_symbol(self) -> dict[str, float | tuple[float, float]]:
         """The parameters under the paper's symbols (m, r, J, m_a, ... l_h, g)."""
         return {symbol: getattr(self, field) for symbol, field in SYMBOLS.items()}
+
+    @classmethod
+    def from_height_mass(
+        cls,
+        height_m: float,
+        mass_kg: float,
+        sex: str | None = None,
+        table: str | None = None,
+        **measured_m: float,
+    ) -> Self:
+        """The body of a person, after published tables.
+
+        Lengths are fractions of height (Drillis & Contini), masses, centres of mass and inertias
+        those of a table of segments. Head, arms and trunk make the trunk, and the mass of a foot
+        lies at the ankle.
+
+        Parameters
+        ----------
+        height_m, mass_kg : float
+            Body height [m] and mass [kg].
+        sex : {"male", "female"}, optional
+            Which of de Leva's tables; male unless said. Dempster's table knows no sexes.
+        table : {"dempster", "deleva"}, optional
+            Unless said, "deleva" where a sex is given and "dempster" where not.
+        **measured_m : float
+            Measured lengths [m] instead of fractions of height: thigh_length_m, shank_length_m,
+            ankle_height_m, foot_length_m, hip_to_shoulder_m, heel_to_ball_m,
+            ankle_ahead_of_heel_m.
+
+        Raises
+        ------
+        BodyError
+            For values that no adult has, or that contradict each other.
+        """
+        given: dict[str, Any] = {"sex": sex, "table": table, **measured_m}
+        return cls(**Person(height_m=height_m, mass_kg=mass_kg, **given).parameters())
 
     @classmethod
     def from_symbols(cls, symbols: Mapping[str, Any]) -> Self:

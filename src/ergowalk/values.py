@@ -11,12 +11,16 @@ import difflib
 from typing import Annotated, Any, ClassVar, NoReturn
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from ergowalk.errors import InputError
 
 FiniteFloat = Annotated[float, Field(allow_inf_nan=False, strict=True)]
 PositiveFloat = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
+
+INPUT_ONLY: dict[str, Any] = {"writeOnly": True}
+"""``json_schema_extra`` of a field that a file may give and that other fields take over."""
 
 
 class Value(BaseModel):
@@ -36,6 +40,11 @@ class Value(BaseModel):
         """A copy with some fields changed, validated anew."""
         fields = {name: getattr(self, name) for name in type(self).model_fields}
         return type(self)(**{**fields, **changes})
+
+
+def is_key(field: FieldInfo) -> bool:
+    """Whether a file may give this field."""
+    return not field.exclude or field.json_schema_extra == INPUT_ONLY
 
 
 def invalid(field: str, value: object, rule: str, remedy: str) -> PydanticCustomError:
@@ -71,7 +80,13 @@ def raise_input_error(error: ValidationError, model: type[Value]) -> NoReturn:
 
 
 def _finding(details: list[ErrorDetails]) -> ErrorDetails:
-    """The first finding; of a value "one number or a pair" that is a pair, what is wrong in it."""
+    """The first finding; of a value "one number or a pair" that is a pair, what is wrong in it.
+
+    An unknown key goes before a missing one, which it may be with another spelling.
+    """
+    unknown = [detail for detail in details if detail["type"] == "extra_forbidden"]
+    if unknown and details[0]["type"] == "missing":
+        return unknown[0]
     place = details[0]["loc"][:1]
     pairs = [
         detail
@@ -100,7 +115,7 @@ def _remedy(place: list[str], model: type[Value]) -> str:
 
 def _nearest(place: list[str], model: type[Value]) -> str:
     fields = _model_at(place[:-1], model).model_fields
-    known = [name for name, field in fields.items() if not field.exclude]
+    known = [name for name, field in fields.items() if is_key(field)]
     close = difflib.get_close_matches(place[-1], known, n=1)
     return f"did you mean '{close[0]}'?" if close else f"known keys: {', '.join(known)}"
 

@@ -8,8 +8,12 @@ from pathlib import Path
 
 import pytest
 
+from ergowalk.anthropometry import MEASURED, Person
+from ergowalk.body import Body
+from ergowalk.cli.parser import PERSON_LENGTHS
 from ergowalk.problem import DEFAULT_PRESET, PRESETS, preset
-from ergowalk.problem.files import problem_from_toml
+from ergowalk.problem.files import json_schema, problem_from_toml
+from ergowalk.problem.scaling import for_person
 
 
 def test_presets_are_listed_with_their_summaries(run):
@@ -47,3 +51,37 @@ def test_init_writes_a_new_file_and_never_replaces_one(run):
     assert answer.status == 2
     assert answer.err == "ergowalk: p.toml: exists already; choose another name\n"
     assert Path("p.toml").read_text("utf-8") == text
+
+
+def test_init_with_a_person_prints_a_problem_of_that_body(run):
+    answer = run("init", "--height", 1.80, "--mass", 75, "--sex", "female")
+    assert (answer.status, answer.err) == (0, "")
+    problem = problem_from_toml(answer.out)
+    assert problem.body == Body.from_height_mass(1.80, 75, "female")
+    person = Person(height_m=1.80, mass_kg=75, sex="female")
+    assert problem == for_person(preset(DEFAULT_PRESET), person)
+    told = " ".join(line[2:] for line in answer.out.split("\n\n")[0].splitlines())
+    assert "1.8 m, 75 kg, de Leva's female table" in told
+    assert "same Froude number" in told
+
+
+def test_init_with_a_person_starts_from_any_preset_with_measured_lengths(run):
+    arguments = ("--preset", "winter-slow", "--table", "dempster", "--foot-length", 0.28)
+    problem = problem_from_toml(run("init", "--height", 1.9, "--mass", 90, *arguments).out)
+    assert problem.corridors == preset("winter-slow").corridors
+    foot = problem.body.leg(0)
+    assert foot.heel_to_metatarsal + foot.toe_length == pytest.approx(0.28, abs=1e-6)
+
+
+def test_lengths_of_the_command_are_those_of_a_person():
+    assert sorted(f"{name.replace('-', '_')}_m" for name in PERSON_LENGTHS) == sorted(
+        MEASURED.values()
+    )
+
+
+def test_init_prints_the_schema_of_problem_files(run):
+    answer = run("init", "--schema")
+    assert (answer.status, answer.err) == (0, "")
+    assert json.loads(answer.out) == json_schema()
+    assert run("init", "--schema", "-o", "problem.schema.json").status == 0
+    assert Path("problem.schema.json").read_text("utf-8") == answer.out

@@ -8,6 +8,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+import jsonschema
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -192,6 +193,19 @@ BAD = [
     ("step_length_m = 0.7\nstride_time_s = inf", "stride_time_s = inf: .*finite"),
     ("step_length_m = 2.7\nstride_time_s = 1.1", r"step_length_m = 2\.7: out of reach"),
     (MINIMAL + "body = 3", "body = 3: .*; "),
+    (MINIMAL + "persn = 1", "persn: unknown key; did you mean 'person'"),
+    (MINIMAL + "person = 1", "person = 1: should be a table of keys and values; give a person's"),
+    (MINIMAL + "[person]\nmass_kg = 70", r"person\.height_m: required but missing; add it"),
+    (MINIMAL + "[person]\nheigth_m = 1.7", r"person\.heigth_m: unknown key; .*'height_m'"),
+    (
+        MINIMAL + "[person]\nheight_m = 170\nmass_kg = 70",
+        r"person\.height_m = 170\.0: must lie between 1 and 2\.5; give it in m",
+    ),
+    (
+        MINIMAL + "[person]\nheight_m = 1.7\nmass_kg = 70\n[body]\nthigh_mas_kg = 8",
+        r"body\.thigh_mas_kg: unknown key; .*thigh_mass_kg",
+    ),
+    ("step_lenght_m = 0.7\nstride_time_s = 1.1", "step_lenght_m: unknown key; .*step_length_m"),
     (MINIMAL + "[body]\nthigh_mass_kg = -8", r"body\.thigh_mass_kg = -8: .*greater than 0"),
     (MINIMAL + "[body]\nthigh_mass_kg = [8, 9]", r"body\.legs = .*both legs must be equal"),
     (MINIMAL + "[body]\nheel_to_ankle_m = 0.5", "foot triangle cannot close.*give l_h between"),
@@ -265,12 +279,40 @@ def test_the_schema_knows_every_key_and_is_json():
     schema = json_schema()
     assert json.loads(json.dumps(schema)) == schema
     written = tomllib.loads(problem_to_toml(preset("berbyuk2002")))
-    assert set(schema["properties"]) == set(written)
+    assert set(schema["properties"]) == {*written, "person"}  # which becomes the body
     assert schema["required"] == ["step_length_m", "stride_time_s"]
     for table, keys in written.items():
         if isinstance(keys, dict):
             definition = schema["properties"][table]["$ref"].rsplit("/", 1)[1]
             assert set(schema["$defs"][definition]["properties"]) == set(keys)
+
+
+def test_the_schema_takes_every_written_file_and_no_unknown_key():
+    schema = json_schema()
+    jsonschema.Draft202012Validator.check_schema(schema)
+    for name in PRESETS:
+        jsonschema.validate(tomllib.loads(problem_to_toml(preset(name))), schema)
+    person = MINIMAL + "[person]\nheight_m = 1.7\nmass_kg = 70\n"
+    jsonschema.validate(tomllib.loads(person), schema)
+    for text, match in (
+        ("step_lenght_m = 0.7\n" + MINIMAL, "'step_lenght_m' was unexpected"),
+        (person + "heigth_m = 2\n", "'heigth_m' was unexpected"),
+        (MINIMAL + "[body]\nthigh_mass_kg = -8", "-8 is (less than|not valid)"),
+        (MINIMAL + "folder = '.'", "'folder' was unexpected"),
+        ("stride_time_s = 1.1", "'step_length_m' is a required property"),
+        (MINIMAL + "[limits]\nfriction_coefficient = 'of'", "'off' was expected|'of' is not valid"),
+    ):
+        with pytest.raises(jsonschema.ValidationError, match=match):
+            jsonschema.validate(tomllib.loads(text), schema)
+
+
+def test_the_schema_describes_every_key_for_the_editor():
+    schema = json_schema()
+    for part in (schema, *schema["$defs"].values()):
+        for name, field in part.get("properties", {}).items():
+            assert field.get("description"), name
+            assert "null" not in json.dumps(field)
+        assert "\n" not in part.get("description", "")
 
 
 @given(value=st.floats(min_value=0, exclude_min=True, allow_infinity=False))

@@ -77,6 +77,13 @@ def _report(arguments: Namespace) -> int:
     return ACCEPTABLE
 
 
+def _export(arguments: Namespace) -> int:
+    from ergowalk.cli.export import run_export
+
+    run_export(arguments)
+    return ACCEPTABLE
+
+
 def _presets(arguments: Namespace) -> int:
     from ergowalk.cli.problems import run_presets
 
@@ -104,6 +111,7 @@ COMMANDS: dict[str, Callable[[Namespace], int]] = {
     "compare": _compare,
     "price": _price,
     "report": _report,
+    "export": _export,
     "presets": _presets,
     "init": _init,
     "app": _app,

@@ -9,9 +9,21 @@ from typing import Any, NoReturn
 from ergowalk import __version__
 from ergowalk.errors import InputError
 
+FORMATS = ("csv", "mot", "grf", "sto", "trc", "mjcf", "loads")
 METHODS = ("collocation", "spline")
 SOLVERS = ("ipopt", "rosenbrock")
 ASKED = ("paper", "everything")
+
+PERSON_LENGTHS = (
+    "thigh-length",
+    "shank-length",
+    "ankle-height",
+    "foot-length",
+    "hip-to-shoulder",
+    "heel-to-ball",
+    "ankle-ahead-of-heel",
+)
+"""Lengths that may be measured: the fields of :class:`ergowalk.anthropometry.Person` in m."""
 
 _STATUS = (
     "Exit status: 0 an acceptable answer; 1 it ran but there is no acceptable answer; "
@@ -46,6 +58,7 @@ def build_parser() -> Parser:
     _add_compare(commands)
     _add_price(commands)
     _add_report(commands)
+    _add_export(commands)
     _add_presets(commands)
     _add_init(commands)
     _add_app(commands)
@@ -214,16 +227,85 @@ def _add_report(commands: Any) -> None:
     _add_json(parser)
 
 
+def _add_export(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "export",
+        "write a stored gait for other software",
+        "CSV of every curve; for OpenSim coordinates and ground reactions (.mot) and joint moments "
+        "(.sto) as its model gait10dof18musc has them; joint centres (.trc); the body for MuJoCo "
+        "(.xml).",
+    )
+    parser.add_argument("gait", type=_path, metavar="GAIT.nc", help="a stored gait")
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=_path,
+        metavar="PATH",
+        help="a file, whose suffix names its format, or a folder for all of them; files there "
+        "are replaced (default: folder export beside the gait)",
+    )
+    parser.add_argument(
+        "--format",
+        action="append",
+        choices=FORMATS,
+        help="this format, whatever the suffix; in a folder, only the formats asked for",
+    )
+    parser.add_argument(
+        "--rate",
+        type=float,
+        default=200.0,
+        metavar="HZ",
+        help="samples per second of .mot, .sto and .trc (default: 200)",
+    )
+    parser.add_argument(
+        "--strides",
+        type=int,
+        default=1,
+        metavar="N",
+        help="strides in .mot, .sto and .trc, each a stride length further on (default: 1)",
+    )
+    _add_json(parser)
+
+
 def _add_presets(commands: Any) -> None:
     _add_json(_command(commands, "presets", "list the named problems"))
 
 
 def _add_init(commands: Any) -> None:
-    parser = _command(commands, "init", "print a commented problem file to start from")
+    parser = _command(
+        commands,
+        "init",
+        "print a commented problem file to start from",
+        "With --height and --mass the body is that of a person, after published tables; step "
+        "length and stride time are scaled to the same Froude number.",
+    )
     _add_preset(parser, "start from this problem")
     parser.add_argument(
         "-o", "--output", type=_path, metavar="FILE", help="write a new file instead of printing"
     )
+    parser.add_argument(
+        "--schema",
+        action="store_true",
+        help="print the JSON schema of problem files instead, for editors",
+    )
+    _add_person(parser)
+
+
+def _add_person(parser: Parser) -> None:
+    group = parser.add_argument_group("a person instead of the walker of the preset")
+    group.add_argument("--height", type=float, metavar="M", help="body height in m")
+    group.add_argument("--mass", type=float, metavar="KG", help="body mass in kg")
+    group.add_argument("--sex", choices=("male", "female"), help="which of de Leva's tables")
+    group.add_argument(
+        "--table",
+        choices=("dempster", "deleva"),
+        help="fractions of mass and inertia (default: deleva with --sex, dempster without)",
+    )
+    for name in PERSON_LENGTHS:
+        group.add_argument(
+            f"--{name}", type=float, metavar="M", help=f"measured {name.replace('-', ' ')} in m"
+        )
 
 
 def _add_app(commands: Any) -> None:

@@ -17,7 +17,7 @@ from pydantic.fields import FieldInfo
 
 from ergowalk.errors import InputError, ProblemError
 from ergowalk.problem.gait_problem import GaitProblem
-from ergowalk.values import Value
+from ergowalk.values import Value, is_key
 
 WIDTH = 96
 """Longest line of a commented file."""
@@ -99,12 +99,12 @@ def problem_from_toml(
 def problem_from_values(values: dict[str, Any], folder: Path | None = None) -> GaitProblem:
     """The problem of the keys and values that a problem file may hold; errors as in one."""
     for name, field in GaitProblem.model_fields.items():
-        if field.exclude and name in values:
+        if name in values and not is_key(field):
             raise ProblemError("unknown key", "remove it", field=name)
     return GaitProblem(**values, folder=folder)
 
 
-def problem_to_toml(problem: GaitProblem, commented: bool = False) -> str:
+def problem_to_toml(problem: GaitProblem, commented: bool = False, remark: str = "") -> str:
     """The problem as TOML with every default filled in.
 
     Parameters
@@ -112,8 +112,10 @@ def problem_to_toml(problem: GaitProblem, commented: bool = False) -> str:
     problem : GaitProblem
     commented : bool
         Whether each key and table is explained by the description of its field.
+    remark : str
+        What else the head of a commented file says.
     """
-    lines = [*(_header() if commented else ()), *_table(problem, "", commented)]
+    lines = [*(_header(remark) if commented else ()), *_table(problem, "", commented)]
     return "\n".join(lines) + "\n"
 
 
@@ -121,9 +123,28 @@ def json_schema() -> dict[str, Any]:
     """JSON schema (draft 2020-12) of a problem file, for editors that check TOML against one."""
     schema = GaitProblem.model_json_schema()
     for name, field in GaitProblem.model_fields.items():
-        if field.exclude:
+        if not is_key(field):
             del schema["properties"][name]
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+    head = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
+    return {**head, **_for_toml(schema)}
+
+
+def _for_toml(schema: dict[str, Any]) -> dict[str, Any]:
+    """A schema without what TOML cannot say (null), and with the first lines of docstrings."""
+    parts = [schema, *schema["$defs"].values()]
+    for part in parts:
+        if "description" in part:
+            part["description"] = " ".join(part["description"].split("\n\n")[0].split())
+        for field in part.get("properties", {}).values():
+            if {"type": "null"} in field.get("anyOf", ()):
+                field["anyOf"].remove({"type": "null"})
+                del field["default"]
+                if len(field["anyOf"]) == 1:
+                    field |= field.pop("anyOf")[0]
+            for choice in field.get("anyOf", ()):
+                if "const" in choice:
+                    choice.pop("enum", None)  # said twice by older pydantic
+    return schema
 
 
 def _parsed(text: str) -> dict[str, Any]:
@@ -136,13 +157,13 @@ def _parsed(text: str) -> dict[str, Any]:
     raise ProblemError(f"not valid TOML: {reason}", _EXAMPLE) from None
 
 
-def _header() -> list[str]:
+def _header(remark: str) -> list[str]:
     required = [name for name, f in GaitProblem.model_fields.items() if f.is_required()]
     sentence = (
         "A gait problem for 'ergowalk solve FILE'. SI units; the rhythm as fractions of T. "
         f"{' and '.join(required)} are required; any other key left out takes its default."
     )
-    return [*_comment(sentence), ""]
+    return [*_comment(sentence), *_comment(remark), ""]
 
 
 def _table(value: Value, place: str, commented: bool) -> Iterator[str]:

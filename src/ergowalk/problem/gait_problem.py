@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from enum import StrEnum
 from pathlib import Path
-from typing import Literal, Self
+from typing import Any, Literal, Self
 
 from pydantic import Field, field_validator, model_validator
 
+from ergowalk.anthropometry import Person
 from ergowalk.body import Body
 from ergowalk.corridors import ANGLES, Corridor, HumanGait, human_gait
-from ergowalk.errors import CorridorError, ProblemError
+from ergowalk.errors import BodyError, CorridorError, ProblemError
 from ergowalk.gait.rhythm import PRINTED_RHYTHM, PhaseOrder, Rhythm
-from ergowalk.values import FiniteFloat, PositiveFloat, Value, invalid
+from ergowalk.values import INPUT_ONLY, FiniteFloat, PositiveFloat, Value, invalid
 
 Off = Literal["off"]
 Bound = PositiveFloat | Off
@@ -250,7 +251,17 @@ class GaitProblem(Value):
         default=DoubleSupport.OPTIMAL,
         description="'optimal' (sharing of load left to the optimiser) or 'linear' (12)",
     )
-    body: Body = Field(default=Body(), description="the walker")
+    person: Person | None = Field(
+        default=None,
+        exclude=True,
+        description="a person's height and mass, from which the body follows",
+        json_schema_extra=INPUT_ONLY,
+    )
+    body: Body = Field(
+        default=Body(),
+        description="the walker; what is left out is the paper's, or that of a table [person] "
+        "with height_m and mass_kg",
+    )
     corridors: Corridors = Field(default=Corridors(), description="human corridors (6)")
     rhythm: RhythmBounds = Field(default=RhythmBounds(), description="contact instants (3)")
     limits: Limits = Field(default=Limits(), description="physical limits")
@@ -266,6 +277,24 @@ class GaitProblem(Value):
         """Corridors of hip, knee and ankle angle in radians (6)."""
         human, width = self.human(), self.corridors.width_sd
         return {joint: human.angle_corridor(joint, width) for joint in ANGLES}
+
+    @model_validator(mode="before")
+    @classmethod
+    def _body_of_person(cls, data: Any) -> Any:
+        """A person becomes the body, except for what is given of that; the body alone is kept."""
+        if not isinstance(data, dict) or not isinstance(data.get("person"), dict | Person):
+            return data
+        person, given = data["person"], data.get("body", {})
+        if isinstance(given, Body):
+            raise BodyError("is given twice", "give either person or body", field="person")
+        if isinstance(person, dict):
+            try:
+                person = Person(**person)
+            except BodyError as error:
+                error.field = ".".join(["person", *([error.field] if error.field else [])])
+                raise
+        body = {**person.parameters(), **given} if isinstance(given, dict) else given
+        return {**data, "person": None, "body": body}
 
     @field_validator("body")
     @classmethod

@@ -32,7 +32,7 @@ def report(paper_gait_file: Path, tmp_path_factory: pytest.TempPathFactory) -> P
 
     solution = Solution.load(paper_gait_file)
     path = tmp_path_factory.mktemp("report") / "report.html"
-    path.write_text(report_html([solution, solution]), "utf-8")
+    path.write_text(report_html([solution, solution], human=True), "utf-8")
     return path
 
 

@@ -205,6 +205,7 @@ def _add_report(commands: Any) -> None:
         metavar="FILE",
         help="the page; a file there is replaced (default: report.html beside the first gait)",
     )
+    _add_human(parser)
     _add_json(parser)
 
 
@@ -222,6 +223,14 @@ def _add_init(commands: Any) -> None:
 
 def _add_preset(parser: Any, what: str) -> None:
     parser.add_argument("--preset", metavar="NAME", help=f"{what} ('ergowalk presets' lists them)")
+
+
+def _add_human(parser: Parser) -> None:
+    parser.add_argument(
+        "--human",
+        action="store_true",
+        help="lay the walker of the human mean angles, on the body of the first gait, over it",
+    )
 
 
 def _add_json(parser: Parser) -> None:

@@ -17,16 +17,20 @@ from ergowalk.errors import GaitFileError, InputError
 from ergowalk.quantities import JOINTS
 from ergowalk.solution import Solution
 from ergowalk.viewer.figures import headline, work_by_joint
+from ergowalk.viewer.human import human_payload
 from ergowalk.viewer.payload import gait_payload
 
 # Nothing may be fetched, whatever a gait file says.
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
 
 
-def report_html(solutions: Sequence[Solution], files: Sequence[str] | None = None) -> str:
+def report_html(
+    solutions: Sequence[Solution], files: Sequence[str] | None = None, human: bool = False
+) -> str:
     """The report of one or more gaits, as the text of an HTML file that refers to no other.
 
-    ``files`` are the names of their files for error messages.
+    ``files`` are the names of their files for error messages. With ``human`` the walker of the
+    human mean angles, on the body of the first gait, is laid over them.
 
     Raises
     ------
@@ -37,6 +41,10 @@ def report_html(solutions: Sequence[Solution], files: Sequence[str] | None = Non
     """
     known: Sequence[str | None] = files or [None] * len(solutions)
     reports = _told_apart([_report(s, f) for s, f in zip(solutions, known, strict=True)])
+    payloads = [report.payload for report in reports]
+    if human:
+        first = solutions[0]
+        payloads.append(human_payload(first.dataset, human_of(first.dataset, first.folder)))
     title = f"Gait report: {', '.join(report.label for report in reports)}"
     return _PAGE.format(
         policy=escape(_POLICY),
@@ -44,13 +52,16 @@ def report_html(solutions: Sequence[Solution], files: Sequence[str] | None = Non
         style=_asset("viewer.css") + _asset("page.css"),
         heading=escape("Gait report" if len(reports) > 1 else title),
         warnings="".join(report.warning() for report in reports),
-        viewer=viewer_html([report.payload for report in reports]),
+        viewer=viewer_html(payloads),
         reports="\n".join(report.html(i) for i, report in enumerate(reports, 1)),
     )
 
 
 def viewer_html(payloads: Sequence[dict[str, Any]]) -> str:
-    """The viewer of some gaits, each from ``gait_payload``, as a part of a page with its style."""
+    """The viewer of some gaits, each from ``gait_payload``, as a part of a page with its style.
+
+    The last may be from ``human_payload``.
+    """
     return _VIEWER.format(
         viewer=_asset("viewer.html"), gaits=json_in_html(payloads), script=_asset("viewer.js")
     )

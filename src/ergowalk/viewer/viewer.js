@@ -1,13 +1,14 @@
 "use strict";
 
 /* One viewer of gaits. `root` is the section of viewer.html, `gaits` are the payloads of
-   payload.py. Gaits are laid over each other at the same fraction of their strides; `position`
+   payload.py, perhaps with one of human.py behind them. Gaits are laid over each other at the same fraction of their strides; `position`
    counts strides from the beginning of the film. */
 function ergowalkViewer(root, gaits) {
   const find = (name) => root.querySelector("." + name);
   const play = find("play"), speed = find("speed"), strides = find("strides");
   const scrub = find("scrub"), clock = find("clock");
   const shown = gaits.map(() => true);
+  gaits.forEach((gait, i) => (gait.key = gait.kind === "human" ? "human" : String(i % 6)));
   let position = 0, playing = false, last = 0, told = 0, stale = true;
 
   const stage = new WalkStage(find("stage"), root, gaits);
@@ -85,7 +86,7 @@ function ergowalkViewer(root, gaits) {
       });
       const name = document.createElement("span");
       name.textContent = " " + gait.label;
-      label.append(box, " ", lineSample(i), name);
+      label.append(box, " ", lineSample(gait.key), name);
       if (!gait.acceptable) {
         const mark = document.createElement("span");
         mark.className = "refused";
@@ -166,15 +167,15 @@ function onDrag(element, moved, position) {
 }
 
 const TELL_EVERY = 150; // ms between new figures in a running film: nobody reads faster
-const DASHES = ["", "7 3", "2 2", "9 3 2 3", "4 4", "1 3"];
-const gaitColour = (i) => `var(--gait-${i % 6})`;
+const DASHES = { 0: "", 1: "7 3", 2: "2 2", 3: "9 3 2 3", 4: "4 4", 5: "1 3", human: "4 3" };
+const gaitColour = (key) => `var(--gait-${key})`;
 
 /* The line of a gait as the legend shows it. */
-function lineSample(i) {
+function lineSample(key) {
   const sample = document.createElement("span");
   sample.innerHTML =
     `<svg class="line" width="34" height="8" aria-hidden="true"><line x1="0" x2="34" y1="4" y2="4"
-     stroke="${gaitColour(i)}" stroke-width="4" stroke-dasharray="${DASHES[i % 6]}"/></svg>`;
+     stroke="${gaitColour(key)}" stroke-width="4" stroke-dasharray="${DASHES[key]}"/></svg>`;
   return sample;
 }
 
@@ -193,6 +194,13 @@ function between(rows, fraction) {
   return Array.isArray(a) ? a.map((v, k) => mix(v, b[k])) : mix(a, b);
 }
 
+/* How far the hip is ahead of a point that goes at the mean speed, in the mean of the stride. */
+function ahead(gait) {
+  const last = gait.hip.length - 1, way = gait.stride_length;
+  const off = gait.hip.slice(0, last).map((p, i) => p[0] - (i / last) * way);
+  return off.reduce((sum, v) => sum + v, 0) / last;
+}
+
 /* The picture of the walkers on a canvas. Lengths in metres until they reach the screen. */
 class WalkStage {
   static PER_WEIGHT = 0.6; // length of the arrow of one body weight
@@ -203,6 +211,7 @@ class WalkStage {
     this.canvas = canvas;
     this.root = root;
     this.gaits = gaits;
+    this.ahead = new Map(gaits.map((gait) => [gait, ahead(gait)]));
     this.pen = canvas.getContext("2d");
     const tops = gaits.flatMap((g) => g.trunk_top.map((p) => p[1]));
     this.height = Math.max(...tops) + WalkStage.HEAD.above + WalkStage.HEAD.radius + 0.06;
@@ -229,7 +238,7 @@ class WalkStage {
     const ground = this.gaits[visible[0] ?? 0];
     pen.setTransform(this.scale, 0, 0, -this.scale, 0, this.height * this.scale);
     // every walker goes at the same place on the screen, whatever its step length
-    const camera = (gait) => fraction * gait.stride_length + gait.hip[0][0];
+    const camera = (gait) => fraction * gait.stride_length + this.ahead.get(gait);
     const inPlace = (gait, paint) => {
       pen.save();
       pen.translate(width / 2 - camera(gait), 0);
@@ -237,8 +246,8 @@ class WalkStage {
       pen.restore();
     };
     const [first, ...others] = visible;
-    if (first !== undefined) inPlace(ground, () => this.walker(ground, first, fraction));
-    for (const i of others) inPlace(this.gaits[i], () => this.sticks(this.gaits[i], i, fraction));
+    if (first !== undefined) inPlace(ground, () => this.walker(ground, fraction));
+    for (const i of others) inPlace(this.gaits[i], () => this.sticks(this.gaits[i], fraction));
     this.ground(camera(ground) + stride * ground.stride_length - width / 2, width);
     inPlace(ground, () => this.prints(ground, stride, fraction));
     for (const i of visible) {
@@ -248,8 +257,8 @@ class WalkStage {
     }
   }
 
-  walker(gait, i, fraction) {
-    const pen = this.pen, own = this.colour(`gait-${i % 6}`), paper = this.colour("paper");
+  walker(gait, fraction) {
+    const pen = this.pen, own = this.colour("gait-" + gait.key), paper = this.colour("paper");
     const hip = between(gait.hip, fraction), top = between(gait.trunk_top, fraction);
     const pale = mixed(own, paper, 0.45);
     const [near, far] = gait.legs;
@@ -268,8 +277,8 @@ class WalkStage {
   }
 
   /* A walker laid over another one: lines alone, so that both are seen. */
-  sticks(gait, i, fraction) {
-    const pen = this.pen, own = this.colour(`gait-${i % 6}`), paper = this.colour("paper");
+  sticks(gait, fraction) {
+    const pen = this.pen, own = this.colour("gait-" + gait.key), paper = this.colour("paper");
     const hip = between(gait.hip, fraction), top = between(gait.trunk_top, fraction);
     const [near, far] = gait.legs.map((leg) => {
       const at = (name) => between(leg[name], fraction);
@@ -311,6 +320,7 @@ class WalkStage {
     const pen = this.pen, power = between(leg.power, fraction);
     const joints = [hip, ...["knee", "ankle", "metatarsal"].map((n) => between(leg[n], fraction))];
     joints.forEach((joint, k) => {
+      if (power[k] === null) return; // not in the table of human means
       const share = Math.min(1, Math.abs(power[k]) / this.strongest);
       const end = this.colour(power[k] > 0 ? "power-up" : "power-down");
       pen.fillStyle = mixed(end, this.colour("power-none"), Math.sqrt(share));
@@ -407,18 +417,19 @@ class WalkStage {
 /* The contact phases of both legs of every gait, as bars over the stride. */
 class PhaseBars {
   constructor(box, gaits) {
-    this.rows = gaits.map((gait, i) => gait.legs.map((leg, k) => this.row(gait, leg, i, k)));
+    this.rows = gaits.map((gait) =>
+      gait.legs.flatMap((leg, k) => (leg.phases.length ? [this.row(gait, leg, k)] : [])));
     box.append(...this.rows.flat());
     this.cursors = [...box.querySelectorAll(".cursor")];
   }
 
-  row(gait, leg, i, k) {
+  row(gait, leg, k) {
     const row = document.createElement("div"), bar = document.createElement("div");
     const name = document.createElement("span");
     row.className = "phase-row";
     bar.className = "bar";
     name.textContent = `leg ${k + 1}`;
-    row.append(name, lineSample(i), bar);
+    row.append(name, lineSample(gait.key), bar);
     bar.setAttribute("role", "img");
     const percent = (s) => Math.round(100 * s);
     const words = leg.phases.map((p) => `${p.name} ${percent(p.start)} to ${percent(p.end)} %`);
@@ -483,7 +494,7 @@ class CurveGrid {
   }
 
   show(visible) {
-    this.visible = visible;
+    this.visible = visible.filter((i) => this.gaits[i].curves.length); // human means are the band
     for (const chart of this.charts) this.redraw(chart);
   }
 
@@ -502,8 +513,8 @@ class CurveGrid {
       parts.push(`<path class="human-mean" d="M${points(human.mean).join("L")}"/>`);
     }
     this.visible.forEach((i, n) => {
-      parts.push(`<path d="M${points(own[n].values).join("L")}" stroke="${gaitColour(i)}"
-        stroke-width="2" stroke-dasharray="${DASHES[i % 6]}"/>`);
+      parts.push(`<path d="M${points(own[n].values).join("L")}" stroke="${gaitColour(this.gaits[i].key)}"
+        stroke-width="2" stroke-dasharray="${DASHES[this.gaits[i].key]}"/>`);
     });
     const ticks = CurveGrid.ticks(low, high).map(
       (t) => `<span class="tick" style="top:${y(t)}%">${String(t).replace("-", "−")}</span>`);
@@ -513,7 +524,7 @@ class CurveGrid {
     chart.plot.setAttribute("aria-label", this.describe(own));
     chart.values.replaceChildren(...this.visible.map((i) => {
       const value = document.createElement("span");
-      value.append(lineSample(i), document.createTextNode(""));
+      value.append(lineSample(this.gaits[i].key), document.createTextNode(""));
       return value;
     }));
   }

@@ -77,6 +77,13 @@ def _report(arguments: Namespace) -> int:
     return ACCEPTABLE
 
 
+def _animate(arguments: Namespace) -> int:
+    from ergowalk.cli.film import run_animate
+
+    run_animate(arguments)
+    return ACCEPTABLE
+
+
 def _presets(arguments: Namespace) -> int:
     from ergowalk.cli.problems import run_presets
 
@@ -97,6 +104,7 @@ COMMANDS: dict[str, Callable[[Namespace], int]] = {
     "compare": _compare,
     "price": _price,
     "report": _report,
+    "animate": _animate,
     "presets": _presets,
     "init": _init,
 }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -46,6 +47,7 @@ def build_parser() -> Parser:
     _add_compare(commands)
     _add_price(commands)
     _add_report(commands)
+    _add_animate(commands)
     _add_presets(commands)
     _add_init(commands)
     return parser
@@ -209,6 +211,48 @@ def _add_report(commands: Any) -> None:
     _add_json(parser)
 
 
+def _add_animate(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "animate",
+        "write a film of stored gaits",
+        "The walkers laid over each other in motion, with reactions, joint powers and contact "
+        "phases. The strides close, so that the film may begin anew.",
+    )
+    parser.add_argument("gaits", nargs="+", type=_path, metavar="GAIT.nc", help="stored gaits")
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=_path,
+        required=True,
+        metavar="FILE",
+        help="the film, .mp4, .gif or .webp; a file there is replaced",
+    )
+    parser.add_argument(
+        "--size",
+        type=_size,
+        default=(960, 540),
+        metavar="WxH",
+        help="width and height in pixels (default: 960x540)",
+    )
+    parser.add_argument(
+        "--fps", type=float, default=50.0, metavar="N", help="frames per second (default: 50)"
+    )
+    parser.add_argument(
+        "--strides",
+        type=int,
+        metavar="N",
+        help="how many (default: 4 in an mp4, 1 in the others, which begin anew by themselves)",
+    )
+    parser.add_argument(
+        "--speed", type=float, default=1.0, metavar="X", help="0.25 for slow motion (default: 1)"
+    )
+    parser.add_argument("--trail", action="store_true", help="draw the cyclogram behind the walker")
+    parser.add_argument("--dark", action="store_true", help="light on dark")
+    _add_human(parser)
+    _add_json(parser)
+
+
 def _add_presets(commands: Any) -> None:
     _add_json(_command(commands, "presets", "list the named problems"))
 
@@ -235,6 +279,13 @@ def _add_human(parser: Parser) -> None:
 
 def _add_json(parser: Parser) -> None:
     parser.add_argument("--json", action="store_true", help="print one JSON object instead")
+
+
+def _size(text: str) -> tuple[int, int]:
+    match = re.fullmatch(r"(\d{1,6})x(\d{1,6})", text)
+    if match is None:
+        raise argparse.ArgumentTypeError(f"{text!r} is no size such as 960x540")
+    return int(match[1]), int(match[2])
 
 
 def _path(text: str) -> Path:

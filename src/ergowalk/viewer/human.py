@@ -1,4 +1,4 @@
-"""The human mean angles as a walker to look at: a drawing on a body, no solution of the mechanics."""
+"""The human mean angles as a walker to look at: a drawing, no solution of the mechanics."""
 
 from __future__ import annotations
 
@@ -56,13 +56,14 @@ def human_payload(dataset: xr.Dataset, human: HumanGait) -> dict[str, Any]:
     fine = np.linspace(0.0, 1.0, _FINE * INTERVALS + 1)
     hip = _hip_path([_motion(body.leg(i), human, fine + i / 2) for i in legs], body)[::_FINE]
     s = fine[::_FINE]
-    top = hip + [0.0, TRUNK_DRAWN * body.trunk_com_m]
+    top = hip + np.array([0.0, TRUNK_DRAWN * body.trunk_com_m])
     length = float(hip[-1, 0] - hip[0, 0])
     return {
         "kind": "human",
         "label": f"human mean angles ({human.name}) on this body, drawn without forces, "
         f"stride {length:.2f} m",
         "acceptable": True,
+        "limits": "",
         "stride_time": float(dataset["time"][-1]),
         "stride_length": round(length, 4),
         "human": human.name,

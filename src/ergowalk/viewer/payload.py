@@ -78,6 +78,7 @@ def gait_payload(dataset: xr.Dataset, human: HumanGait, label: str) -> dict[str,
     return {
         "label": label,
         "acceptable": bool(dataset.attrs.get("acceptable") == 1),
+        "limits": str(dataset.attrs.get("limits", "")),
         "stride_time": float(dataset["time"][-1]),
         "stride_length": round(float(hip[-1, 0] - hip[0, 0]), 4),
         "human": human.name,
@@ -191,5 +192,6 @@ def _curve(
 def rounded(values: Array) -> Any:
     """Nested lists of four decimals (a tenth of a millimetre); None where it is not a number."""
     finite = np.isfinite(values)
-    found = np.round(values, 4) + 0.0
-    return found.tolist() if finite.all() else np.where(finite, found, None).tolist()
+    found = (np.round(values, 4) + 0.0).astype(object)
+    found[~finite] = None
+    return found.tolist()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -106,7 +107,7 @@ def test_a_failure_leaves_the_old_film(
 def test_without_pyav_an_mp4_is_refused_in_one_line(
     gait_file: Path, run: Any, tmp_path: Path, monkeypatch: Any
 ) -> None:
-    monkeypatch.setitem(__import__("sys").modules, "av", None)
+    monkeypatch.setitem(sys.modules, "av", None)
     answer = run("animate", gait_file, "-o", "walk.mp4")
     assert answer.status == 2
     assert (

@@ -82,7 +82,7 @@ def _mp4(content: bytes) -> Measured:
     (track,) = (body for name, body in _boxes(_box(content, "moov")) if name == "trak")
     media = _box(track, "mdia")
     header = _box(track, "tkhd")
-    width, height = (int.from_bytes(header[k : k + 4], "big") >> 16 for k in (-8, -4))
+    width, height = (int.from_bytes(p, "big") >> 16 for p in (header[-8:-4], header[-4:]))
     ticks = int.from_bytes(_box(media, "mdhd")[12:16], "big")
     table = _box(_box(_box(media, "minf"), "stbl"), "stts")
     delays: list[Fraction] = []

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import importlib.util
 import io
+import re
+import sys
 from fractions import Fraction
 from typing import Any
 
@@ -33,7 +35,7 @@ def gaits(paper_gait: xr.Dataset) -> list[dict[str, Any]]:
 
 
 def options(kind: str, **changes: Any) -> FilmOptions:
-    return FilmOptions(**{"format": kind, "fps": 20.0, **SMALL, **changes})
+    return FilmOptions(**{"format": kind, "fps": 20.0, "strides": 1, **SMALL, **changes})
 
 
 @pytest.mark.parametrize("kind", FORMATS)
@@ -89,14 +91,17 @@ def test_what_is_decoded_is_what_was_drawn(gaits: Any, kind: str) -> None:
 
 
 def test_the_stride_closes(gaits: Any) -> None:
-    scene = Scene(gaits, options("webp"))
+    # forces and powers jump when a heel lands: they are left out here
+    unloaded = [{**leg, "pressure": [None] * 301} for leg in gaits[0]["legs"]]
+    idle = [{**leg, "power": [[0.0] * 4] * 301} for leg in unloaded]
+    scene = Scene([{**gaits[0], "legs": idle}], options("webp"))
 
     def off(a: float, b: float) -> float:
-        return float(np.abs(scene.draw(a).astype(int) - scene.draw(b)).mean())
+        walk = int(160 - scene.bottom)  # above the bars, whose cursor goes from end to end
+        return float(np.abs(scene.draw(a).astype(int) - scene.draw(b))[:walk].mean())
 
     step = off(0.5, 0.52)
-    # at heel contact alone the bars' cursor and the new print of the foot jump
-    assert off(0.0, 1.0 - 1e-6) < 0.15 * step
+    assert off(0.0, 1.0 - 1e-6) < 0.01 * step
     assert off(0.25, 0.25 + 1e-6) < 0.01 * step
 
 
@@ -143,7 +148,7 @@ def test_every_size_can_be_drawn(gaits: Any, size: tuple[int, int]) -> None:
     width, height = size
     picture = Scene(gaits, options("webp", width=width, height=height)).draw(0.1)
     assert picture.shape == (height, width, 3)
-    assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 20
+    assert len(np.unique(picture[:, :, 0])) > 20
 
 
 @pytest.mark.parametrize(
@@ -160,11 +165,8 @@ def test_every_size_can_be_drawn(gaits: Any, size: tuple[int, int]) -> None:
     ],
 )
 def test_what_no_film_can_be_is_refused(changes: dict[str, Any], told: str) -> None:
-    with pytest.raises(InputError, match=told.replace("(", r"\(")):
-        options(
-            **{"kind": "gif", **({"kind": changes.pop("format")} if "format" in changes else {})},
-            **changes,
-        )
+    with pytest.raises(InputError, match=re.escape(told)):
+        FilmOptions(**{"format": "gif", **changes})
 
 
 def test_films_too_long_for_anyone_are_refused() -> None:
@@ -182,7 +184,7 @@ def test_a_walker_that_does_not_walk_is_refused(gaits: Any) -> None:
 
 
 def test_without_pyav_an_mp4_says_what_to_install(gaits: Any, monkeypatch: Any) -> None:
-    monkeypatch.setitem(__import__("sys").modules, "av", None)
+    monkeypatch.setitem(sys.modules, "av", None)
     with pytest.raises(
         InputError, match=r"needs the package PyAV; .*pip install 'ergowalk\[film\]'"
     ):

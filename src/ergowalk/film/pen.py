@@ -77,8 +77,9 @@ class Pen:
 
         ``align`` is the share of the words that stands left of the point.
         """
-        path = _words(text, size)
-        width = words_width(text, size)
+        if not text.strip():
+            return 0.0
+        path, width = _words(text, size), words_width(text, size)
         left, base = self._transform.transform((x, y))
         self._draw(path, colour, 1.0, Affine2D().translate(left - align * width, base))
         return width

@@ -84,6 +84,13 @@ def _animate(arguments: Namespace) -> int:
     return ACCEPTABLE
 
 
+def _figures(arguments: Namespace) -> int:
+    from ergowalk.cli.figures import run_figures
+
+    run_figures(arguments)
+    return ACCEPTABLE
+
+
 def _presets(arguments: Namespace) -> int:
     from ergowalk.cli.problems import run_presets
 
@@ -105,6 +112,7 @@ COMMANDS: dict[str, Callable[[Namespace], int]] = {
     "price": _price,
     "report": _report,
     "animate": _animate,
+    "figures": _figures,
     "presets": _presets,
     "init": _init,
 }

@@ -13,6 +13,7 @@ from ergowalk.errors import InputError
 METHODS = ("collocation", "spline")
 SOLVERS = ("ipopt", "rosenbrock")
 ASKED = ("paper", "everything")
+COLUMNS = ("single", "double")
 
 _STATUS = (
     "Exit status: 0 an acceptable answer; 1 it ran but there is no acceptable answer; "
@@ -48,6 +49,7 @@ def build_parser() -> Parser:
     _add_price(commands)
     _add_report(commands)
     _add_animate(commands)
+    _add_figures(commands)
     _add_presets(commands)
     _add_init(commands)
     return parser
@@ -250,6 +252,31 @@ def _add_animate(commands: Any) -> None:
     parser.add_argument("--trail", action="store_true", help="draw the cyclogram behind the walker")
     parser.add_argument("--dark", action="store_true", help="light on dark")
     _add_human(parser)
+    _add_json(parser)
+
+
+def _add_figures(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "figures",
+        "write the paper's Figures 2-10 of a stored gait for a journal",
+        "Drawings in pdf and svg, as wide as a column, with fonts embedded and text that can be "
+        "edited.",
+    )
+    parser.add_argument("gait", type=_path, metavar="GAIT.nc", help="a stored gait")
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=_path,
+        metavar="DIR",
+        help="folder for the figures (default: figures beside the gait)",
+    )
+    parser.add_argument(
+        "--column",
+        choices=COLUMNS,
+        default=COLUMNS[0],
+        help="88 mm or 180 mm wide (default: %(default)s)",
+    )
     _add_json(parser)
 
 

@@ -88,7 +88,7 @@ SINGLE = Sheet(
 DOUBLE = Sheet(
     text=8.0,
     small=7.5,
-    curve=Place(180 * MM, 90 * MM, (0.095, 0.205, 0.885, 0.70)),
+    curve=Place(180 * MM, 90 * MM, (0.105, 0.205, 0.875, 0.70)),
     cyclogram=Place(180 * MM, 132 * MM, (0.065, 0.125, 0.92, 0.855)),
     hand=Hand(optimum=1.5, mean=1.0, corridor=0.8, phases=7.0, label="stacked"),
     sticks=0.9,

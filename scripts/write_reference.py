@@ -30,6 +30,8 @@ API = {
     "AuditReport": "ergowalk.audit.AuditReport",
     "compare": "ergowalk.comparison.compare",
     "write_figures": "ergowalk.plots.write_figures",
+    "film": "ergowalk.film.film",
+    "FilmOptions": "ergowalk.film.FilmOptions",
     "problem_to_toml": "ergowalk.problem.files.problem_to_toml",
     "casadi_functions": "ergowalk.mechanics.symbolic.casadi_functions",
 }

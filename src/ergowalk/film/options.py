@@ -25,7 +25,29 @@ STRIDES = {"mp4": 4, "gif": 1, "webp": 1}
 
 
 class FilmOptions(Value):
-    """Format, size and time of a film."""
+    """Format, size and time of a film.
+
+    Parameters
+    ----------
+    format : {"mp4", "gif", "webp"}
+    width, height : int
+        Pixels, 160x120 to 3840x2160, even in an mp4.
+    fps : float
+        Frames per second, 1 to 120; a gif takes up to 50.
+    strides : int, optional
+        How many; without it 4 in an mp4 and 1 in the others.
+    speed : float
+        1 as in life, 0.25 for slow motion.
+    dark : bool
+        Light on dark.
+    trail : bool
+        The cyclogram behind the walker.
+
+    Raises
+    ------
+    InputError
+        For a value that no film can have.
+    """
 
     format: str = Field(description=f"one of {', '.join(FORMATS)}")
     width: int = Field(default=960, ge=160, le=3840, strict=True, description="width in pixels")

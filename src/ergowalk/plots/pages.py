@@ -56,11 +56,12 @@ def write_figures(
     folder: Path,
     formats: Iterable[str] = style.FORMATS,
     human: HumanGait | None = None,
-    sheet: Sheet = SCREEN,
+    sheet: Sheet | None = None,
 ) -> list[Path]:
     """Write every figure as ``folder/NAME.FORMAT`` and return the paths.
 
-    Without ``human`` the data that the gait's problem names are used. The folder is made if it
+    Without ``human`` the data that the gait's problem names are used, without ``sheet`` the size
+    is that of a screen; ``ergowalk.plots.JOURNAL`` has those of a journal. The folder is made if it
     does not exist; a file is renamed into place only when it is complete.
 
     Raises
@@ -72,7 +73,7 @@ def write_figures(
     OutputError
         If a format is unknown or a file cannot be written.
     """
-    folder, kinds = Path(folder), list(formats)
+    folder, kinds, sheet = Path(folder), list(formats), sheet or SCREEN
     for kind in kinds:
         style.check_format(kind)
     material = Material.of(dataset, human_of(dataset) if human is None else human)

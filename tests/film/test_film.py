@@ -143,6 +143,20 @@ def test_hostile_names_stay_words(gaits: Any) -> None:
         assert Scene(named, options("webp")).draw(0.0).shape == (160, 240, 3)
 
 
+def test_energy_stands_with_its_limits_and_a_refused_gait_is_marked(gaits: Any) -> None:
+    refused = {**gaits[0], "acceptable": False}
+    for width, height in ((960, 540), (400, 600), (560, 404)):
+        said = Scene([gaits[0], refused], options("webp", width=width, height=height)).said
+        words = " ".join(line.text for line in said)
+        assert words.count(f"with {gaits[0]['limits']}") == 2
+        assert [line.mark.strip() for line in said if line.sample] == ["", "not acceptable"]
+
+
+def test_marks_stay_where_there_is_no_room_for_limits(gaits: Any) -> None:
+    said = Scene([{**gaits[0], "acceptable": False}] * 3, options("webp")).said
+    assert sum(bool(line.mark) for line in said) == 3
+
+
 @pytest.mark.parametrize("size", [(160, 120), (400, 120), (160, 640), (1920, 1080)])
 def test_every_size_can_be_drawn(gaits: Any, size: tuple[int, int]) -> None:
     width, height = size

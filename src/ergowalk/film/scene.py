@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,9 @@ MARKS = 4
 
 MOST_BEHIND = 20
 """Strides whose traces are seen behind the walker, if the picture is so wide."""
+
+_REFUSED = "  not acceptable"
+_RED = {False: WARNING, True: "#ff8a80"}  # on light and on dark
 
 _MOST_BARS = 3  # gaits whose contact phases find room
 
@@ -40,7 +44,7 @@ class Scene:
         self.walkers = [Walker(p, i, self.colours) for i, p in enumerate(payloads)]
         self.strongest = max([0.1, *(w.strongest for w in self.walkers)])
         self.pen = Pen(self.width, self.height)
-        self.pen.unit = max(self.height / 540, 0.6)
+        self.pen.unit = max(min(self.height / 540, self.width / 720), 0.6)
         self.text = 14 * self.pen.unit
         self._layout()
         self._background()
@@ -71,7 +75,8 @@ class Scene:
         """Rows of pixels: names at the top, the walk, bars of contact phases, what signs mean."""
         self.row = 1.5 * self.text
         bars = [w for w in self.walkers if w.payload["legs"][0]["phases"]][:_MOST_BARS]
-        self.names = self.row * (0.3 + sum(1 + bool(w.payload["limits"]) for w in self.walkers))
+        self.said = self._said()
+        self.names = self.row * (0.3 + len(self.said))
         self.bars = bars if self.row * 2 * len(bars) < self.height / 4 else []
         keys = self._keys_width() < self.width - 2 * self.text
         self.keys = self.row if keys else 0.3 * self.row
@@ -91,7 +96,7 @@ class Scene:
         pen.place()
         pen.rectangle(0, 0, self.width, self.height, colour["paper"])
         self._names()
-        for k, (walker, number) in enumerate((w, n) for w in self.bars for n in (1, 0)):
+        for k, (walker, number) in enumerate((w, n) for w in reversed(self.bars) for n in (1, 0)):
             self._bar(walker, number, self.keys + self.row * (k + 0.3))
         if self.keys >= self.row:
             self._keys()
@@ -100,24 +105,35 @@ class Scene:
         pen.rectangle(0, self.bottom + ground - pen.unit, self.width, pen.unit, colour["muted"])
         pen.keep()
 
-    def _names(self) -> None:
-        pen, x, y = self.pen, self.text, self.height - self.row
-        room = self.width - 5 * self.text
+    def _said(self) -> list[_Line]:
+        """Names of the gaits, what their energy was found under, and the speed of the film."""
+        found = []
         for walker in self.walkers:
-            pen.rectangle(x, y + 0.25 * self.text, 2 * self.text, 0.25 * self.text, walker.own)
-            text = shortened(walker.payload["label"], self.text, room)
-            wide = pen.write(text, x + 2.5 * self.text, y, self.text, self.colours["ink"])
-            if not walker.payload["acceptable"]:
-                mark = "  not acceptable"
-                pen.write(mark, x + 2.5 * self.text + wide, y, self.text, WARNING)
-            y -= self.row
+            mark = "" if walker.payload["acceptable"] else _REFUSED
+            room = self.width - 4 * self.text - words_width(mark, self.text)
+            label = wrapped(walker.payload["label"], self.text, room)
+            found += [_Line(text, self.text, "ink") for text in label]
+            found[-len(label)] = _Line(label[0], self.text, "ink", walker.own, mark)
             if walker.payload["limits"]:
-                text = shortened(f"with {walker.payload['limits']}", 0.8 * self.text, room)
-                pen.write(text, x + 2.5 * self.text, y, 0.8 * self.text, self.colours["muted"])
-                y -= self.row
+                limits = wrapped(f"with {walker.payload['limits']}", 0.8 * self.text, room)
+                found += [_Line(text, 0.8 * self.text, "muted") for text in limits]
         if self.options.speed != 1:
-            text = f"speed {self.options.speed:g}"
-            pen.write(text, x + 2.5 * self.text, y, 0.8 * self.text, self.colours["muted"])
+            found.append(_Line(f"speed {self.options.speed:g}", 0.8 * self.text, "muted"))
+        most = max(1, int(self.height / 2.5 / self.row))
+        if len(found) > most:  # no room for many words; whether a gait is acceptable comes first
+            found = [line for line in found if line.colour != "muted"]
+        return found[:most]
+
+    def _names(self) -> None:
+        pen, y = self.pen, self.height - self.row
+        for line in self.said:
+            if line.sample:
+                sample = (self.text, y + 0.25 * self.text, 2 * self.text, 0.25 * self.text)
+                pen.rectangle(*sample, line.sample)
+            left = 3.5 * self.text
+            left += pen.write(line.text, left, y, line.size, self.colours[line.colour])
+            pen.write(line.mark, left, y, self.text, _RED[self.options.dark])
+            y -= self.row
 
     def _ends(self) -> tuple[float, float]:
         """Left and right end of the bars [pixels]."""
@@ -194,6 +210,32 @@ class Scene:
         ):
             pen.rectangle(x, -0.13, width, height, self.colours["ink"])
         pen.write("0.5 m", left + 0.54, -0.13, 0.8 * self.text, self.colours["ink"])
+
+
+@dataclass(frozen=True)
+class _Line:
+    """Words at the top: size [pixels], colour, a sample of the gait's colour, a mark."""
+
+    text: str
+    size: float
+    colour: str
+    sample: str = ""
+    mark: str = ""
+
+
+def wrapped(text: str, size: float, room: float) -> list[str]:
+    """Words in lines that fit into some pixels, at least one; a longer word is cut."""
+    lines = [""]
+    for word in text.split()[:_MOST_WORDS]:
+        longer = f"{lines[-1]} {word}".strip()
+        if words_width(longer, size) <= room:
+            lines[-1] = longer
+        else:
+            lines += [shortened(word, size, room)]
+    return [line for line in lines if line] or [""]
+
+
+_MOST_WORDS = 60
 
 
 def shortened(text: str, size: float, room: float) -> str:

@@ -63,7 +63,7 @@ def test_every_frame_differs_from_the_one_before(gaits: Any, kind: str) -> None:
     assert len(pictures) == round(20 * gaits[0]["stride_time"])
     for i, picture in enumerate(pictures):
         moved = np.abs(picture.astype(int) - pictures[i - 1]).max(axis=2) > 60
-        assert 0.005 < moved.mean() < 0.4, i  # the last one before the first too
+        assert 0.002 < moved.mean() < 0.4, i  # the last one before the first too
 
 
 def decoded(content: bytes, kind: str) -> list[np.ndarray]:

@@ -35,6 +35,8 @@ API = {
     "Format": "ergowalk.io.Format",
     "body_mjcf": "ergowalk.io.body_mjcf",
     "write_figures": "ergowalk.plots.write_figures",
+    "film": "ergowalk.film.film",
+    "FilmOptions": "ergowalk.film.FilmOptions",
     "problem_to_toml": "ergowalk.problem.files.problem_to_toml",
     "json_schema": "ergowalk.problem.files.json_schema",
     "casadi_functions": "ergowalk.mechanics.symbolic.casadi_functions",

@@ -2,38 +2,13 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
-CHROMIUM = shutil.which("chromium")
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed")
-
 WIDTHS = (1280, 390)
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    with sync_api.sync_playwright() as playwright:
-        # the sandbox of Chromium does not start for root, as in most containers
-        chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        yield chromium
-        chromium.close()
-
-
-@pytest.fixture(scope="module")
-def report(paper_gait_file: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    from ergowalk.solution import Solution
-    from ergowalk.viewer import report_html
-
-    solution = Solution.load(paper_gait_file)
-    path = tmp_path_factory.mktemp("report") / "report.html"
-    path.write_text(report_html([solution, solution]), "utf-8")
-    return path
 
 
 @pytest.fixture(params=WIDTHS)

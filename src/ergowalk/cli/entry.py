@@ -84,6 +84,20 @@ def _export(arguments: Namespace) -> int:
     return ACCEPTABLE
 
 
+def _animate(arguments: Namespace) -> int:
+    from ergowalk.cli.film import run_animate
+
+    run_animate(arguments)
+    return ACCEPTABLE
+
+
+def _figures(arguments: Namespace) -> int:
+    from ergowalk.cli.figures import run_figures
+
+    run_figures(arguments)
+    return ACCEPTABLE
+
+
 def _presets(arguments: Namespace) -> int:
     from ergowalk.cli.problems import run_presets
 
@@ -112,6 +126,8 @@ COMMANDS: dict[str, Callable[[Namespace], int]] = {
     "price": _price,
     "report": _report,
     "export": _export,
+    "animate": _animate,
+    "figures": _figures,
     "presets": _presets,
     "init": _init,
     "app": _app,

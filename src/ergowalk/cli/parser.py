@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -13,6 +14,7 @@ FORMATS = ("csv", "mot", "grf", "sto", "trc", "mjcf", "loads")
 METHODS = ("collocation", "spline")
 SOLVERS = ("ipopt", "rosenbrock")
 ASKED = ("paper", "everything")
+COLUMNS = ("single", "double")
 
 PERSON_LENGTHS = (
     "thigh-length",
@@ -59,6 +61,8 @@ def build_parser() -> Parser:
     _add_price(commands)
     _add_report(commands)
     _add_export(commands)
+    _add_animate(commands)
+    _add_figures(commands)
     _add_presets(commands)
     _add_init(commands)
     _add_app(commands)
@@ -224,6 +228,74 @@ def _add_report(commands: Any) -> None:
         metavar="FILE",
         help="the page; a file there is replaced (default: report.html beside the first gait)",
     )
+    _add_human(parser)
+    _add_json(parser)
+
+
+def _add_animate(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "animate",
+        "write a film of stored gaits",
+        "The walkers laid over each other in motion, with reactions, joint powers and contact "
+        "phases. The strides close, so that the film may begin anew.",
+    )
+    parser.add_argument("gaits", nargs="+", type=_path, metavar="GAIT.nc", help="stored gaits")
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=_path,
+        required=True,
+        metavar="FILE",
+        help="the film, .mp4, .gif or .webp; a file there is replaced",
+    )
+    parser.add_argument(
+        "--size",
+        type=_size,
+        default=(960, 540),
+        metavar="WxH",
+        help="width and height in pixels (default: 960x540)",
+    )
+    parser.add_argument(
+        "--fps", type=float, default=50.0, metavar="N", help="frames per second (default: 50)"
+    )
+    parser.add_argument(
+        "--strides",
+        type=int,
+        metavar="N",
+        help="how many (default: 4 in an mp4, 1 in the others, which begin anew by themselves)",
+    )
+    parser.add_argument(
+        "--speed", type=float, default=1.0, metavar="X", help="0.25 for slow motion (default: 1)"
+    )
+    parser.add_argument("--trail", action="store_true", help="draw the cyclogram behind the walker")
+    parser.add_argument("--dark", action="store_true", help="light on dark")
+    _add_human(parser)
+    _add_json(parser)
+
+
+def _add_figures(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "figures",
+        "write the paper's Figures 2-10 of a stored gait for a journal",
+        "Drawings in pdf and svg, as wide as a column, with fonts embedded and text that can be "
+        "edited.",
+    )
+    parser.add_argument("gait", type=_path, metavar="GAIT.nc", help="a stored gait")
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=_path,
+        metavar="DIR",
+        help="folder for the figures (default: figures beside the gait)",
+    )
+    parser.add_argument(
+        "--column",
+        choices=COLUMNS,
+        default=COLUMNS[0],
+        help="88 mm or 180 mm wide (default: %(default)s)",
+    )
     _add_json(parser)
 
 
@@ -340,8 +412,23 @@ def _add_preset(parser: Any, what: str) -> None:
     parser.add_argument("--preset", metavar="NAME", help=f"{what} ('ergowalk presets' lists them)")
 
 
+def _add_human(parser: Parser) -> None:
+    parser.add_argument(
+        "--human",
+        action="store_true",
+        help="lay the walker of the human mean angles, on the body of the first gait, over it",
+    )
+
+
 def _add_json(parser: Parser) -> None:
     parser.add_argument("--json", action="store_true", help="print one JSON object instead")
+
+
+def _size(text: str) -> tuple[int, int]:
+    match = re.fullmatch(r"(\d{1,6})x(\d{1,6})", text)
+    if match is None:
+        raise argparse.ArgumentTypeError(f"{text!r} is no size such as 960x540")
+    return int(match[1]), int(match[2])
 
 
 def _path(text: str) -> Path:

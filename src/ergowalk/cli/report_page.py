@@ -31,7 +31,7 @@ def run_report(arguments: Namespace) -> None:
     solutions = [Solution.load(path) for path in paths]
     if any(target.exists() and target.samefile(path) for path in paths):
         raise OutputError("is one of the gaits", "choose another file with -o", file=str(target))
-    write_text(target, report_html(solutions, [str(path) for path in paths]))
+    write_text(target, report_html(solutions, [str(path) for path in paths], arguments.human))
     if arguments.json:
         gaits = [_as_dict(path, s) for path, s in zip(paths, solutions, strict=True)]
         emit_json({"report": str(target), "bytes": target.stat().st_size, "gaits": gaits})

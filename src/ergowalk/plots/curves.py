@@ -23,6 +23,7 @@ from ergowalk.comparison import (
 )
 from ergowalk.corridors import SIGNALS, HumanGait
 from ergowalk.plots import style
+from ergowalk.plots.sheets import SCREEN, Hand
 
 Array = NDArray[np.float64]
 
@@ -57,34 +58,33 @@ class Material:
         )
 
 
-def draw_curve(axes: Axes, material: Material, signal: ComparedSignal, small: bool = False) -> None:
-    """Draw one curve: human band and mean, corridor of the problem, optimum, phases of leg 1.
-
-    ``small`` axes have smaller phase names and leave the signal's name to the title.
-    """
+def draw_curve(
+    axes: Axes, material: Material, signal: ComparedSignal, hand: Hand = SCREEN.hand
+) -> None:
+    """Draw one curve: human band and mean, corridor of the problem, optimum, phases of leg 1."""
     if signal.name in material.human.curves:
         band = material.human.corridor(signal.name)
         mean, half = band.mean(_DENSE), np.maximum(band.sd(_DENSE), 0.0)
         low, high = mean - half, mean + half
         axes.fill_between(100 * _DENSE, low, high, color=style.BAND, linewidth=0, zorder=1)
-        axes.plot(100 * _DENSE, mean, "--", color=style.HUMAN, linewidth=1.1, zorder=3)
+        axes.plot(100 * _DENSE, mean, "--", color=style.HUMAN, linewidth=hand.mean, zorder=3)
     percent = 100 * material.gait.fraction
     for bound in material.corridors.get(signal.name, ()):
-        axes.plot(percent, bound, color=style.CORRIDOR, linewidth=0.8, zorder=2.5)
+        axes.plot(percent, bound, color=style.CORRIDOR, linewidth=hand.corridor, zorder=2.5)
     values = material.gait.values[signal.name]
-    width = 1.4 if small else 1.8
-    axes.plot(percent, values, color=style.GAIT, linewidth=width, zorder=4)
+    axes.plot(percent, values, color=style.GAIT, linewidth=hand.optimum, zorder=4)
     axes.axhline(0.0, color="black", linewidth=0.5, zorder=2)
     axes.set_xlim(0, 100)
     axes.set_xticks(range(0, 101, 20))
     axes.set_xlabel("stride of leg 1 [%]")
-    axes.set_ylabel(axis_label(signal, with_name=not small))
-    _mark_phases(axes, material.phases, 6.5 if small else 7.5)
+    axes.set_ylabel(axis_label(signal, hand))
+    _mark_phases(axes, material.phases, hand.phases)
 
 
-def axis_label(signal: ComparedSignal, with_name: bool = True) -> str:
+def axis_label(signal: ComparedSignal, hand: Hand = SCREEN.hand) -> str:
     """What the ordinate shows, its unit, and what its positive sign means."""
-    name = f"{SIGNALS[signal.name].label} " if with_name else ""
+    name = SIGNALS[signal.name].label
+    name = {"full": f"{name} ", "short": "", "stacked": f"{name}\n"}[hand.label]
     return f"{name}{plain(signal.symbol)} [{signal.unit}], {signal.positive} +"
 
 
@@ -180,19 +180,21 @@ def _overlap(left: tuple[float, float, int], right: tuple[float, float, int]) ->
     return left[0] + left[1] / 2 > right[0] - right[1] / 2
 
 
-def curve_keys(material: Material, *signals: ComparedSignal) -> list[Line2D | Patch]:
+def curve_keys(
+    material: Material, *signals: ComparedSignal, hand: Hand = SCREEN.hand
+) -> list[Line2D | Patch]:
     """Legend entries of what is drawn of these signals."""
     names = [signal.name for signal in signals]
     keys: list[Line2D | Patch] = [
-        Line2D([], [], color=style.GAIT, linewidth=1.8, label="optimum, leg 1")
+        Line2D([], [], color=style.GAIT, linewidth=hand.optimum, label="optimum, leg 1")
     ]
     if any(name in material.human.curves for name in names):
         name = material.human.name.replace("\\", "/").rsplit("/", 1)[-1]
         label = f"human mean ({name if len(name) <= 24 else name[:23] + '…'})"
         keys += [
-            Line2D([], [], color=style.HUMAN, linewidth=1.1, linestyle="--", label=label),
+            Line2D([], [], color=style.HUMAN, linewidth=hand.mean, linestyle="--", label=label),
             Patch(color=style.BAND, linewidth=0, label="mean ± 1 SD"),
         ]
     if any(name in material.corridors for name in names):
-        keys.append(Line2D([], [], color=style.CORRIDOR, linewidth=0.8, label="corridor"))
+        keys.append(Line2D([], [], color=style.CORRIDOR, linewidth=hand.corridor, label="corridor"))
     return keys

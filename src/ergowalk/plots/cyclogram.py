@@ -102,7 +102,7 @@ def _down(angle: Array) -> Array:
 
 
 def draw_cyclogram(axes: Axes, dataset: xr.Dataset, scale: float = 1.0) -> None:
-    """Draw the cyclogram; ``scale`` multiplies the line widths.
+    """Draw the cyclogram; ``scale`` multiplies line widths and the size of words.
 
     The first, middle and last figure (heel contacts of leg 1, leg 2, leg 1) are drawn strong,
     those between them pale.
@@ -159,10 +159,9 @@ def _frame(axes: Axes, figures: Sticks) -> None:
     axes.set_ylabel("height y [m]")
 
 
-def cyclogram_keys() -> list[Line2D]:
+def cyclogram_keys(scale: float = 1.0) -> list[Line2D]:
     """Legend entries of the cyclogram."""
+    named = (("leg 1", style.LEG_1), ("leg 2", style.LEG_2), ("trunk", style.TRUNK))
     return [
-        Line2D([], [], color=style.LEG_1, linewidth=1.7, label="leg 1"),
-        Line2D([], [], color=style.LEG_2, linewidth=1.7, label="leg 2"),
-        Line2D([], [], color=style.TRUNK, linewidth=1.7, label="trunk"),
+        Line2D([], [], color=colour, linewidth=1.7 * scale, label=name) for name, colour in named
     ]

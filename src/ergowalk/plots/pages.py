@@ -15,18 +15,15 @@ from ergowalk.comparison import COMPARED, ComparedSignal, compare, human_of
 from ergowalk.corridors import SIGNALS, HumanGait
 from ergowalk.errors import GaitFileError, OutputError
 from ergowalk.plots import style
-from ergowalk.plots.curves import (
-    Material,
-    curve_keys,
-    draw_curve,
-)
+from ergowalk.plots.curves import Material, curve_keys, draw_curve
 from ergowalk.plots.cyclogram import cyclogram_keys, draw_cyclogram
+from ergowalk.plots.sheets import SCREEN, Hand, Place, Sheet
 
-Build = Callable[[xr.Dataset, Material], Figure]
+Build = Callable[[xr.Dataset, Material, Sheet], Figure]
 
 
-def figures(dataset: xr.Dataset, human: HumanGait) -> dict[str, Figure]:
-    """All figures of a gait by name (:data:`FIGURES`).
+def figures(dataset: xr.Dataset, human: HumanGait, sheet: Sheet = SCREEN) -> dict[str, Figure]:
+    """All figures of a gait by name (:data:`FIGURES`); for a journal without the overview.
 
     Parameters
     ----------
@@ -34,6 +31,8 @@ def figures(dataset: xr.Dataset, human: HumanGait) -> dict[str, Figure]:
         A gait in the format of ``gait.nc``.
     human : HumanGait
         Human data to draw beside it; signals that the table lacks are drawn alone.
+    sheet : Sheet
+        Where they will be seen.
 
     Raises
     ------
@@ -41,7 +40,15 @@ def figures(dataset: xr.Dataset, human: HumanGait) -> dict[str, Figure]:
         If the dataset lacks a variable, or one is not finite.
     """
     material = Material.of(dataset, human)
-    return {name: _page(build, dataset, material) for name, build in FIGURES.items()}
+    return {name: _page(FIGURES[name], dataset, material, sheet) for name in names_on(sheet)}
+
+
+def names_on(sheet: Sheet) -> list[str]:
+    """Names of the figures that are made for a kind of page."""
+    return [name for name in FIGURES if sheet.overview or name != OVERVIEW]
+
+
+OVERVIEW = "figure_00_overview"
 
 
 def write_figures(
@@ -49,10 +56,12 @@ def write_figures(
     folder: Path,
     formats: Iterable[str] = style.FORMATS,
     human: HumanGait | None = None,
+    sheet: Sheet | None = None,
 ) -> list[Path]:
     """Write every figure as ``folder/NAME.FORMAT`` and return the paths.
 
-    Without ``human`` the data that the gait's problem names are used. The folder is made if it
+    Without ``human`` the data that the gait's problem names are used, without ``sheet`` the size
+    is that of a screen; ``ergowalk.plots.JOURNAL`` has those of a journal. The folder is made if it
     does not exist; a file is renamed into place only when it is complete.
 
     Raises
@@ -64,7 +73,7 @@ def write_figures(
     OutputError
         If a format is unknown or a file cannot be written.
     """
-    folder, kinds = Path(folder), list(formats)
+    folder, kinds, sheet = Path(folder), list(formats), sheet or SCREEN
     for kind in kinds:
         style.check_format(kind)
     material = Material.of(dataset, human_of(dataset) if human is None else human)
@@ -75,15 +84,17 @@ def write_figures(
             f"cannot be made ({error.strerror or error})", "choose another folder", file=str(folder)
         ) from None
     paths = []
-    for name, build in FIGURES.items():
-        figure = _page(build, dataset, material)  # one at a time: a page's pixels take megabytes
+    for name in names_on(sheet):
+        figure = _page(
+            FIGURES[name], dataset, material, sheet
+        )  # one at a time: a page's pixels take megabytes
         paths += [style.save(figure, folder / f"{name}.{kind}") for kind in kinds]
     return paths
 
 
-def _page(build: Build, dataset: xr.Dataset, material: Material) -> Figure:
-    with style.styled():
-        figure = build(dataset, material)
+def _page(build: Build, dataset: xr.Dataset, material: Material, sheet: Sheet) -> Figure:
+    with style.styled(sheet):
+        figure = build(dataset, material, sheet)
         if not dataset.attrs.get("acceptable", 1):
             figure.text(
                 0.99,
@@ -97,29 +108,35 @@ def _page(build: Build, dataset: xr.Dataset, material: Material) -> Figure:
     return figure
 
 
-def _cyclogram_page(dataset: xr.Dataset, material: Material) -> Figure:
-    figure = Figure(figsize=(9.0, 6.6))
-    axes = figure.add_axes((0.065, 0.13, 0.92, 0.81))
-    draw_cyclogram(axes, dataset)
-    _title(axes, f"Cyclogram of a double step, {_size(dataset)}")
-    figure.legend(handles=cyclogram_keys(), loc="lower center", ncols=3)
+def _cyclogram_page(dataset: xr.Dataset, material: Material, sheet: Sheet) -> Figure:
+    figure, axes = _empty(sheet.cyclogram)
+    draw_cyclogram(axes, dataset, sheet.sticks)
+    if sheet.titles:
+        _title(axes, f"Cyclogram of a double step, {_size(dataset)}")
+    figure.legend(handles=cyclogram_keys(sheet.sticks), loc="lower center", ncols=3)
     return figure
 
 
+def _empty(place: Place) -> tuple[Figure, Axes]:
+    figure = Figure(figsize=(place.width, place.height))
+    return figure, figure.add_axes(place.axes)
+
+
 def _curve_page(signal: ComparedSignal) -> Build:
-    def build(dataset: xr.Dataset, material: Material) -> Figure:
-        figure = Figure(figsize=(6.6, 4.2))
-        axes = figure.add_axes((0.115, 0.20, 0.865, 0.66))
-        draw_curve(axes, material, signal)
-        _title(axes, f"{_name(signal)} of leg 1, {_size(dataset)}", pad=16)
-        keys = curve_keys(material, signal)
-        figure.legend(handles=keys, loc="lower center", ncols=len(keys))
+    def build(dataset: xr.Dataset, material: Material, sheet: Sheet) -> Figure:
+        figure, axes = _empty(sheet.curve)
+        draw_curve(axes, material, signal, sheet.hand)
+        if sheet.titles:
+            _title(axes, f"{_name(signal)} of leg 1, {_size(dataset)}", pad=16)
+        keys = curve_keys(material, signal, hand=sheet.hand)
+        columns = min(len(keys), sheet.columns or len(keys))
+        figure.legend(handles=keys, loc="lower center", ncols=columns)
         return figure
 
     return build
 
 
-def _overview_page(dataset: xr.Dataset, material: Material) -> Figure:
+def _overview_page(dataset: xr.Dataset, material: Material, sheet: Sheet) -> Figure:
     figure = Figure(figsize=(11.0, 13.0))
     axes = figure.add_axes((0.06, 0.64, 0.925, 0.325))
     draw_cyclogram(axes, dataset)
@@ -127,7 +144,7 @@ def _overview_page(dataset: xr.Dataset, material: Material) -> Figure:
     distances = {s.name: s.rms_sd for s in compare(dataset, material.human).signals}
     for signal, (row, column) in zip(COMPARED, _CELLS, strict=True):
         axes = figure.add_axes(_cell(row, column))
-        draw_curve(axes, material, signal, small=True)
+        draw_curve(axes, material, signal, _CELL)
         distance = distances.get(signal.name)
         note = "" if distance is None else f", {distance:.2f} SD"
         _title(axes, _name(signal) + note, pad=12)
@@ -142,6 +159,9 @@ def _overview_page(dataset: xr.Dataset, material: Material) -> Figure:
     figure.text(left, bottom + 0.24 * height, text, va="top", fontsize=7.5, linespacing=1.35)
     return figure
 
+
+_CELL = Hand(optimum=1.4, phases=6.5, label="short")
+"""How curves are drawn in the overview."""
 
 _CELLS = ((0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2))
 """Row and column of each curve in the overview."""
@@ -193,7 +213,7 @@ def _number(dataset: xr.Dataset, attribute: str) -> float:
 
 
 FIGURES: dict[str, Build] = {
-    "figure_00_overview": _overview_page,
+    OVERVIEW: _overview_page,
     "figure_02_cyclogram": _cyclogram_page,
     "figure_03_hip_angle": _curve_page(COMPARED[0]),
     "figure_04_knee_angle": _curve_page(COMPARED[1]),

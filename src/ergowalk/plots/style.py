@@ -16,6 +16,7 @@ import matplotlib
 from matplotlib.figure import Figure
 
 from ergowalk.errors import OutputError
+from ergowalk.plots.sheets import SCREEN, Sheet
 
 # Okabe and Ito's palette: told apart with any colour vision
 LEG_1 = "#0072B2"
@@ -30,21 +31,22 @@ FAINT = "#9A9A9A"
 
 DPI = 150
 FORMATS = ("png", "svg")
+"""Formats for screens."""
+
+PRINTED = ("pdf", "svg")
+"""Formats for journals: drawings whose text is text."""
+
+KNOWN = ("png", "svg", "pdf")
 
 _SETTINGS: Any = {
-    "font.size": 9.0,
     "axes.titlesize": 10.0,
     "axes.titleweight": "bold",
     "axes.titlelocation": "left",
-    "axes.labelsize": 9.0,
     "axes.linewidth": 0.6,
     "axes.spines.top": False,
     "axes.spines.right": False,
-    "xtick.labelsize": 8.0,
-    "ytick.labelsize": 8.0,
     "xtick.major.width": 0.6,
     "ytick.major.width": 0.6,
-    "legend.fontsize": 8.0,
     "legend.frameon": False,
     "lines.solid_capstyle": "round",
     "lines.solid_joinstyle": "round",
@@ -52,20 +54,37 @@ _SETTINGS: Any = {
     "savefig.facecolor": "white",
     "svg.fonttype": "none",  # text stays text: searchable, small, in the reader's font
     "svg.hashsalt": "ergowalk",  # ids from the content instead of at random
+    "pdf.fonttype": 42,  # fonts embedded as outlines that can be edited, not as drawings
 }
 
 
+def _sizes(sheet: Sheet) -> dict[str, float]:
+    """Sizes of text on a kind of page."""
+    labels = dict.fromkeys(("font.size", "axes.labelsize"), sheet.text)
+    return labels | dict.fromkeys(
+        ("xtick.labelsize", "ytick.labelsize", "legend.fontsize"), sheet.small
+    )
+
+
 @contextmanager
-def styled() -> Iterator[None]:
+def styled(sheet: Sheet = SCREEN) -> Iterator[None]:
     """The package's settings on top of matplotlib's defaults, whatever the user's file says."""
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
-        matplotlib.rcParams.update(_SETTINGS)
+        matplotlib.rcParams.update(_SETTINGS | _sizes(sheet))
         yield
 
 
-_FAST: dict[str, dict[str, Any]] = {"png": {"pil_kwargs": {"compress_level": 3}}, "svg": {}}
+_FAST: dict[str, dict[str, Any]] = {"png": {"pil_kwargs": {"compress_level": 3}}}
 """Level 3 takes a third of the time of the default 6, for files a tenth larger."""
+
+
+_METADATA: dict[str, dict[str, Any]] = {
+    "png": {"Software": None},
+    "svg": {"Date": None, "Creator": None},
+    "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
+}
+"""Neither the date nor the version of matplotlib: a figure changes only with its content."""
 
 
 def save(figure: Figure, path: Path) -> Path:
@@ -81,11 +100,11 @@ def save(figure: Figure, path: Path) -> Path:
     kind = path.suffix.lstrip(".")
     check_format(kind)
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    # neither the date nor the version of matplotlib: a figure changes only with its content
-    metadata = {"Date": None, "Creator": None} if kind == "svg" else {"Software": None}
     try:
         with styled():
-            figure.savefig(part, format=kind, dpi=DPI, metadata=metadata, **_FAST[kind])
+            figure.savefig(
+                part, format=kind, dpi=DPI, metadata=_METADATA[kind], **_FAST.get(kind, {})
+            )
         os.replace(part, path)
     except OSError as error:
         raise OutputError(
@@ -101,7 +120,7 @@ def save(figure: Figure, path: Path) -> Path:
 
 def check_format(kind: str) -> None:
     """Raise OutputError unless figures can be written in this format."""
-    if kind not in FORMATS:
+    if kind not in KNOWN:
         raise OutputError(
-            "no such picture format", f"choose {' or '.join(FORMATS)}", field="format", value=kind
+            "no such picture format", f"choose {' or '.join(KNOWN)}", field="format", value=kind
         )

@@ -5,9 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
 from html import escape
-from importlib import resources
 from typing import Any
 
 from ergowalk.audit import AuditReport
@@ -17,16 +15,21 @@ from ergowalk.errors import GaitFileError, InputError
 from ergowalk.quantities import JOINTS
 from ergowalk.solution import Solution
 from ergowalk.viewer.figures import headline, work_by_joint
+from ergowalk.viewer.human import human_payload
+from ergowalk.viewer.looks import asset
 from ergowalk.viewer.payload import gait_payload
 
 # Nothing may be fetched, whatever a gait file says.
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
 
 
-def report_html(solutions: Sequence[Solution], files: Sequence[str] | None = None) -> str:
+def report_html(
+    solutions: Sequence[Solution], files: Sequence[str] | None = None, human: bool = False
+) -> str:
     """The report of one or more gaits, as the text of an HTML file that refers to no other.
 
-    ``files`` are the names of their files for error messages.
+    ``files`` are the names of their files for error messages. With ``human`` the walker of the
+    human mean angles, on the body of the first gait, is laid over them.
 
     Raises
     ------
@@ -35,24 +38,39 @@ def report_html(solutions: Sequence[Solution], files: Sequence[str] | None = Non
     ProblemError, BodyError, CorridorError
         If its problem cannot be read, or its table of human data is lost.
     """
-    known: Sequence[str | None] = files or [None] * len(solutions)
-    reports = _told_apart([_report(s, f) for s, f in zip(solutions, known, strict=True)])
+    reports = _reports(solutions, files)
     title = f"Gait report: {', '.join(report.label for report in reports)}"
     return _PAGE.format(
         policy=escape(_POLICY),
         title=escape(title),
-        style=_asset("viewer.css") + _asset("page.css"),
+        style=asset("viewer.css") + asset("page.css"),
         heading=escape("Gait report" if len(reports) > 1 else title),
         warnings="".join(report.warning() for report in reports),
-        viewer=viewer_html([report.payload for report in reports]),
+        viewer=viewer_html(_payloads(reports, human)),
         reports="\n".join(report.html(i) for i, report in enumerate(reports, 1)),
     )
 
 
+def payloads(
+    solutions: Sequence[Solution], files: Sequence[str] | None = None, human: bool = False
+) -> list[dict[str, Any]]:
+    """What :func:`report_html` gives the viewer of these gaits, told apart by their labels.
+
+    Raises
+    ------
+    GaitFileError, ProblemError, BodyError, CorridorError
+        As :func:`report_html`.
+    """
+    return _payloads(_reports(solutions, files), human)
+
+
 def viewer_html(payloads: Sequence[dict[str, Any]]) -> str:
-    """The viewer of some gaits, each from ``gait_payload``, as a part of a page with its style."""
+    """The viewer of some gaits, each from ``gait_payload``, as a part of a page with its style.
+
+    The last may be from ``human_payload``.
+    """
     return _VIEWER.format(
-        viewer=_asset("viewer.html"), gaits=json_in_html(payloads), script=_asset("viewer.js")
+        viewer=asset("viewer.html"), gaits=json_in_html(payloads), script=asset("viewer.js")
     )
 
 
@@ -106,6 +124,19 @@ class _Report:
             version=escape(str(self.solution.dataset.attrs.get("ergowalk_version", "?"))),
             commands=_listing(_commands(self.solution), "commands"),
         )
+
+
+def _reports(solutions: Sequence[Solution], files: Sequence[str] | None) -> list[_Report]:
+    known: Sequence[str | None] = files or [None] * len(solutions)
+    return _told_apart([_report(s, f) for s, f in zip(solutions, known, strict=True)])
+
+
+def _payloads(reports: Sequence[_Report], human: bool) -> list[dict[str, Any]]:
+    found = [report.payload for report in reports]
+    if human:
+        first = reports[0].solution
+        found.append(human_payload(first.dataset, human_of(first.dataset, first.folder)))
+    return found
 
 
 def _report(solution: Solution, file: str | None) -> _Report:
@@ -243,11 +274,6 @@ def _listing(text: str, name: str) -> str:
 def _scrolling(content: str, name: str) -> str:
     """What is wider than a narrow screen scrolls by itself, with the keyboard too."""
     return f'<div class="scrolls" tabindex="0" role="group" aria-label="{name}">{content}</div>'
-
-
-@cache
-def _asset(name: str) -> str:
-    return resources.files("ergowalk.viewer").joinpath(name).read_text("utf-8")
 
 
 _PAGE = """\

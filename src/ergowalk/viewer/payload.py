@@ -78,11 +78,12 @@ def gait_payload(dataset: xr.Dataset, human: HumanGait, label: str) -> dict[str,
     return {
         "label": label,
         "acceptable": bool(dataset.attrs.get("acceptable") == 1),
+        "limits": str(dataset.attrs.get("limits", "")),
         "stride_time": float(dataset["time"][-1]),
         "stride_length": round(float(hip[-1, 0] - hip[0, 0]), 4),
         "human": human.name,
-        "hip": _rounded(hip),
-        "trunk_top": _rounded(hip + TRUNK_DRAWN * body.trunk_com_m * up),
+        "hip": rounded(hip),
+        "trunk_top": rounded(hip + TRUNK_DRAWN * body.trunk_com_m * up),
         "legs": [_leg(dataset, frames, body, hip, leg) for leg in LEGS],
         "curves": _curves(dataset, frames, body, human),
     }
@@ -135,10 +136,10 @@ def _leg(dataset: xr.Dataset, frames: Frames, body: Body, hip: Array, leg: int) 
     force = [frames.at("ground_reaction_force", leg=leg, axis=axis) / weight for axis in "xy"]
     power = [frames.at("joint_power", leg=leg, joint=j) / body.total_mass for j in JOINTS]
     return {
-        **{p: _rounded(np.stack(getattr(points, p).position, axis=1)) for p in POINTS},
-        "reaction": _rounded(np.stack(force, axis=1)),
-        "pressure": _rounded(frames.at("center_of_pressure", gaps=True, leg=leg)),
-        "power": _rounded(np.stack(power, axis=1)),
+        **{p: rounded(np.stack(getattr(points, p).position, axis=1)) for p in POINTS},
+        "reaction": rounded(np.stack(force, axis=1)),
+        "pressure": rounded(frames.at("center_of_pressure", gaps=True, leg=leg)),
+        "power": rounded(np.stack(power, axis=1)),
         "phases": [asdict(span) for span in contact_phases(dataset, leg)],
     }
 
@@ -179,16 +180,18 @@ def _curve(
     if name in human.curves:
         mean, sd = (c(np.linspace(0.0, 1.0, len(values))) for c in human.curves[name])
         band = {
-            "mean": _rounded(mean / human_unit),
-            "sd": _rounded(np.maximum(sd, 0.0) / human_unit),
+            "mean": rounded(mean / human_unit),
+            "sd": rounded(np.maximum(sd, 0.0) / human_unit),
         }
-    values = _rounded(values)
+    values = rounded(values)
     return {"name": name, "title": title, "unit": unit, "positive": positive, "values": values} | (
         {"human": band} if band else {}
     )
 
 
-def _rounded(values: Array) -> Any:
+def rounded(values: Array) -> Any:
     """Nested lists of four decimals (a tenth of a millimetre); None where it is not a number."""
-    found: list[Any] = np.where(np.isfinite(values), np.round(values, 4) + 0.0, np.nan).tolist()
-    return [None if isinstance(v, float) and v != v else v for v in found]
+    finite = np.isfinite(values)
+    found = (np.round(values, 4) + 0.0).astype(object)
+    found[~finite] = None
+    return found.tolist()

@@ -1,8 +1,8 @@
 "use strict";
 
 /* One viewer of gaits. `root` is the section of viewer.html, `gaits` are the payloads of
-   payload.py. Gaits are laid over each other at the same fraction of their strides; `position`
-   counts strides from the beginning of the film. Returns a function that ends the viewer, for a page
+   payload.py, perhaps with one of human.py behind them. Gaits are laid over each other at the same
+   fraction of their strides; `position` counts strides from the beginning of the film. Returns a function that ends the viewer, for a page
    that shows other gaits later. */
 function ergowalkViewer(root, gaits) {
   const find = (name) => root.querySelector("." + name);
@@ -10,6 +10,7 @@ function ergowalkViewer(root, gaits) {
   const scrub = find("scrub"), clock = find("clock");
   const shown = gaits.map(() => true);
   const end = new AbortController(), untilEnd = { signal: end.signal };
+  gaits.forEach((gait, i) => (gait.key = gait.kind === "human" ? "human" : String(i % 6)));
   let position = 0, playing = false, last = 0, told = 0, stale = true;
 
   const stage = new WalkStage(find("stage"), root, gaits);
@@ -88,7 +89,7 @@ function ergowalkViewer(root, gaits) {
       });
       const name = document.createElement("span");
       name.textContent = " " + gait.label;
-      label.append(box, " ", lineSample(i), name);
+      label.append(box, " ", lineSample(gait.key), name);
       if (!gait.acceptable) {
         const mark = document.createElement("span");
         mark.className = "refused";
@@ -173,16 +174,34 @@ function onDrag(element, moved, position) {
   }
 }
 
+/* The walker's looks; lengths in metres. A limb is as thick as two radii at its ends say. Films take
+   these from here: it must stay JSON. */
+const LOOKS = {
+  "per_weight": 0.6,
+  "below": 0.17,
+  "above": 0.06,
+  "head": { "radius": 0.1, "above": 0.21 },
+  "limbs": {
+    "neck": [0.05, 0.045], "trunk": [0.085, 0.105],
+    "thigh": [0.08, 0.055], "shank": [0.055, 0.036], "toes": [0.022, 0.012]
+  },
+  "foot_edge": 0.045,
+  "hips_apart": 0.035,
+  "joint": { "least": 0.02, "more": 0.03 },
+  "arrow_head": { "length": 0.07, "turn": 0.4 },
+  "shares": { "trunk": 0.7, "far_leg": 0.45, "far_line": 0.6 }
+};
+
 const TELL_EVERY = 150; // ms between new figures in a running film: nobody reads faster
-const DASHES = ["", "7 3", "2 2", "9 3 2 3", "4 4", "1 3"];
-const gaitColour = (i) => `var(--gait-${i % 6})`;
+const DASHES = { 0: "", 1: "7 3", 2: "2 2", 3: "9 3 2 3", 4: "4 4", 5: "1 3", human: "4 3" };
+const gaitColour = (key) => `var(--gait-${key})`;
 
 /* The line of a gait as the legend shows it. */
-function lineSample(i) {
+function lineSample(key) {
   const sample = document.createElement("span");
   sample.innerHTML =
     `<svg class="line" width="34" height="8" aria-hidden="true"><line x1="0" x2="34" y1="4" y2="4"
-     stroke="${gaitColour(i)}" stroke-width="4" stroke-dasharray="${DASHES[i % 6]}"/></svg>`;
+     stroke="${gaitColour(key)}" stroke-width="4" stroke-dasharray="${DASHES[key]}"/></svg>`;
   return sample;
 }
 
@@ -201,19 +220,23 @@ function between(rows, fraction) {
   return Array.isArray(a) ? a.map((v, k) => mix(v, b[k])) : mix(a, b);
 }
 
+/* How far the hip is ahead of a point that goes at the mean speed, in the mean of the stride. */
+function ahead(gait) {
+  const last = gait.hip.length - 1, way = gait.stride_length;
+  const off = gait.hip.slice(0, last).map((p, i) => p[0] - (i / last) * way);
+  return off.reduce((sum, v) => sum + v, 0) / last;
+}
+
 /* The picture of the walkers on a canvas. Lengths in metres until they reach the screen. */
 class WalkStage {
-  static PER_WEIGHT = 0.6; // length of the arrow of one body weight
-  static BELOW = 0.17; // what is seen under the ground
-  static HEAD = { radius: 0.1, above: 0.21 }; // drawn for the eye: in the model a part of the trunk
-
   constructor(canvas, root, gaits) {
     this.canvas = canvas;
     this.root = root;
     this.gaits = gaits;
+    this.ahead = new Map(gaits.map((gait) => [gait, ahead(gait)]));
     this.pen = canvas.getContext("2d");
     const tops = gaits.flatMap((g) => g.trunk_top.map((p) => p[1]));
-    this.height = Math.max(...tops) + WalkStage.HEAD.above + WalkStage.HEAD.radius + 0.06;
+    this.height = Math.max(...tops) + LOOKS.head.above + LOOKS.head.radius + LOOKS.above;
     const powers = gaits.flatMap((g) => g.legs.flatMap((leg) => leg.power.flat()));
     this.strongest = powers.reduce((most, p) => Math.max(most, Math.abs(p)), 0.1);
   }
@@ -225,7 +248,7 @@ class WalkStage {
     const style = getComputedStyle(this.root);
     const known = {}; // asking for a style while the page changes is slow
     this.colour = (name) => (known[name] ??= style.getPropertyValue("--" + name).trim());
-    this.scale = this.canvas.height / (this.height + WalkStage.BELOW);
+    this.scale = this.canvas.height / (this.height + LOOKS.below);
     this.pixel = ratio / this.scale;
   }
 
@@ -237,7 +260,7 @@ class WalkStage {
     const ground = this.gaits[visible[0] ?? 0];
     pen.setTransform(this.scale, 0, 0, -this.scale, 0, this.height * this.scale);
     // every walker goes at the same place on the screen, whatever its step length
-    const camera = (gait) => fraction * gait.stride_length + gait.hip[0][0];
+    const camera = (gait) => fraction * gait.stride_length + this.ahead.get(gait);
     const inPlace = (gait, paint) => {
       pen.save();
       pen.translate(width / 2 - camera(gait), 0);
@@ -245,8 +268,8 @@ class WalkStage {
       pen.restore();
     };
     const [first, ...others] = visible;
-    if (first !== undefined) inPlace(ground, () => this.walker(ground, first, fraction));
-    for (const i of others) inPlace(this.gaits[i], () => this.sticks(this.gaits[i], i, fraction));
+    if (first !== undefined) inPlace(ground, () => this.walker(ground, fraction));
+    for (const i of others) inPlace(this.gaits[i], () => this.sticks(this.gaits[i], fraction));
     this.ground(camera(ground) + stride * ground.stride_length - width / 2, width);
     inPlace(ground, () => this.prints(ground, stride, fraction));
     for (const i of visible) {
@@ -256,28 +279,29 @@ class WalkStage {
     }
   }
 
-  walker(gait, i, fraction) {
-    const pen = this.pen, own = this.colour(`gait-${i % 6}`), paper = this.colour("paper");
+  walker(gait, fraction) {
+    const pen = this.pen, own = this.colour("gait-" + gait.key), paper = this.colour("paper");
     const hip = between(gait.hip, fraction), top = between(gait.trunk_top, fraction);
-    const pale = mixed(own, paper, 0.45);
+    const pale = mixed(own, paper, LOOKS.shares.far_leg);
     const [near, far] = gait.legs;
     this.leg(far, hip, fraction, pale);
     const along = [top[0] - hip[0], top[1] - hip[1]], length = Math.hypot(...along);
-    const up = along.map((v) => v / length), { above, radius } = WalkStage.HEAD;
+    const up = along.map((v) => v / length), { above, radius } = LOOKS.head;
     const head = [top[0] + above * up[0], top[1] + above * up[1]];
-    pen.fillStyle = mixed(own, this.colour("muted"), 0.7);
-    this.limb(top, head, 0.05, 0.045);
-    this.limb(hip, top, 0.085, 0.105);
+    pen.fillStyle = mixed(own, this.colour("muted"), LOOKS.shares.trunk);
+    this.limb(top, head, "neck");
+    this.limb(hip, top, "trunk");
     this.disc(head, radius);
     this.leg(near, hip, fraction, own);
-    const ahead = [0.035 * up[1], -0.035 * up[0]]; // both hips are one point: leg 1 in front
-    this.powers(far, [hip[0] - ahead[0], hip[1] - ahead[1]], fraction);
-    this.powers(near, [hip[0] + ahead[0], hip[1] + ahead[1]], fraction);
+    // both hips are one point: leg 1 in front
+    const apart = [LOOKS.hips_apart * up[1], -LOOKS.hips_apart * up[0]];
+    this.powers(far, [hip[0] - apart[0], hip[1] - apart[1]], fraction);
+    this.powers(near, [hip[0] + apart[0], hip[1] + apart[1]], fraction);
   }
 
   /* A walker laid over another one: lines alone, so that both are seen. */
-  sticks(gait, i, fraction) {
-    const pen = this.pen, own = this.colour(`gait-${i % 6}`), paper = this.colour("paper");
+  sticks(gait, fraction) {
+    const pen = this.pen, own = this.colour("gait-" + gait.key), paper = this.colour("paper");
     const hip = between(gait.hip, fraction), top = between(gait.trunk_top, fraction);
     const [near, far] = gait.legs.map((leg) => {
       const at = (name) => between(leg[name], fraction);
@@ -285,7 +309,7 @@ class WalkStage {
       return [hip, at("knee"), at("ankle"), ...foot];
     });
     pen.lineJoin = pen.lineCap = "round";
-    const pale = mixed(own, paper, 0.6);
+    const pale = mixed(own, paper, LOOKS.shares.far_line);
     for (const [line, colour] of [[far, pale], [[hip, top], own], [near, own]]) {
       for (const [edge, width] of [[paper, 6], [colour, 3.5]]) {
         pen.strokeStyle = edge;
@@ -302,11 +326,11 @@ class WalkStage {
     const pen = this.pen, at = (name) => between(leg[name], fraction);
     const knee = at("knee"), ankle = at("ankle"), ball = at("metatarsal");
     pen.fillStyle = pen.strokeStyle = colour;
-    this.limb(hip, knee, 0.08, 0.055);
-    this.limb(knee, ankle, 0.055, 0.036);
-    this.limb(ball, at("toe_tip"), 0.022, 0.012);
+    this.limb(hip, knee, "thigh");
+    this.limb(knee, ankle, "shank");
+    this.limb(ball, at("toe_tip"), "toes");
     pen.lineJoin = "round";
-    pen.lineWidth = 0.045;
+    pen.lineWidth = LOOKS.foot_edge;
     pen.beginPath();
     for (const p of [at("heel"), ankle, ball]) pen.lineTo(p[0], p[1]);
     pen.closePath();
@@ -319,18 +343,20 @@ class WalkStage {
     const pen = this.pen, power = between(leg.power, fraction);
     const joints = [hip, ...["knee", "ankle", "metatarsal"].map((n) => between(leg[n], fraction))];
     joints.forEach((joint, k) => {
+      if (power[k] === null) return; // not in the table of human means
       const share = Math.min(1, Math.abs(power[k]) / this.strongest);
       const end = this.colour(power[k] > 0 ? "power-up" : "power-down");
       pen.fillStyle = mixed(end, this.colour("power-none"), Math.sqrt(share));
-      this.disc(joint, 0.02 + 0.03 * Math.sqrt(share));
+      this.disc(joint, LOOKS.joint.least + LOOKS.joint.more * Math.sqrt(share));
       pen.strokeStyle = this.colour("ink");
       pen.lineWidth = this.pixel;
       pen.stroke();
     });
   }
 
-  /* A limb between two points, of radius r at one and s at the other. */
-  limb(p, q, r, s) {
+  /* A limb between two points. */
+  limb(p, q, name) {
+    const [r, s] = LOOKS.limbs[name];
     const turn = Math.atan2(q[1] - p[1], q[0] - p[0]), pen = this.pen;
     pen.beginPath();
     pen.arc(p[0], p[1], r, turn + Math.PI / 2, turn - Math.PI / 2);
@@ -348,12 +374,13 @@ class WalkStage {
   /* The reaction as an arrow that begins at the centre of pressure. */
   reaction(leg, fraction) {
     const x = between(leg.pressure, fraction), force = between(leg.reaction, fraction);
-    const length = WalkStage.PER_WEIGHT * Math.hypot(...force), pen = this.pen;
+    const length = LOOKS.per_weight * Math.hypot(...force), pen = this.pen;
     if (x === null || length < 0.02) return;
-    const tip = [x + WalkStage.PER_WEIGHT * force[0], WalkStage.PER_WEIGHT * force[1]];
-    const turn = Math.atan2(tip[1], tip[0] - x), head = Math.min(0.07, length / 2);
-    const corner = (side) =>
-      [tip[0] - head * Math.cos(turn + side), tip[1] - head * Math.sin(turn + side)];
+    const tip = [x + LOOKS.per_weight * force[0], LOOKS.per_weight * force[1]];
+    const turn = Math.atan2(tip[1], tip[0] - x), side = LOOKS.arrow_head.turn;
+    const head = Math.min(LOOKS.arrow_head.length, length / 2);
+    const corner = (way) =>
+      [tip[0] - head * Math.cos(turn + way), tip[1] - head * Math.sin(turn + way)];
     pen.lineCap = "round";
     for (const [colour, width] of [["paper", 5], ["arrow", 2.5]]) { // an edge to stand out
       pen.strokeStyle = this.colour(colour);
@@ -361,9 +388,9 @@ class WalkStage {
       pen.beginPath();
       pen.moveTo(x, 0);
       pen.lineTo(...tip);
-      pen.moveTo(...corner(0.4));
+      pen.moveTo(...corner(side));
       pen.lineTo(...tip);
-      pen.lineTo(...corner(-0.4));
+      pen.lineTo(...corner(-side));
       pen.stroke();
     }
     pen.fillStyle = this.colour("arrow");
@@ -374,7 +401,7 @@ class WalkStage {
   ground(left, width) {
     const pen = this.pen;
     pen.fillStyle = this.colour("ground");
-    pen.fillRect(0, -WalkStage.BELOW, width, WalkStage.BELOW);
+    pen.fillRect(0, -LOOKS.below, width, LOOKS.below);
     pen.fillStyle = this.colour("muted");
     pen.fillRect(0, -this.pixel, width, this.pixel);
     for (let k = Math.ceil(2 * left) - 1; k / 2 < left + width; k++) {
@@ -415,18 +442,19 @@ class WalkStage {
 /* The contact phases of both legs of every gait, as bars over the stride. */
 class PhaseBars {
   constructor(box, gaits) {
-    this.rows = gaits.map((gait, i) => gait.legs.map((leg, k) => this.row(gait, leg, i, k)));
+    this.rows = gaits.map((gait) =>
+      gait.legs.flatMap((leg, k) => (leg.phases.length ? [this.row(gait, leg, k)] : [])));
     box.append(...this.rows.flat());
     this.cursors = [...box.querySelectorAll(".cursor")];
   }
 
-  row(gait, leg, i, k) {
+  row(gait, leg, k) {
     const row = document.createElement("div"), bar = document.createElement("div");
     const name = document.createElement("span");
     row.className = "phase-row";
     bar.className = "bar";
     name.textContent = `leg ${k + 1}`;
-    row.append(name, lineSample(i), bar);
+    row.append(name, lineSample(gait.key), bar);
     bar.setAttribute("role", "img");
     const percent = (s) => Math.round(100 * s);
     const words = leg.phases.map((p) => `${p.name} ${percent(p.start)} to ${percent(p.end)} %`);
@@ -491,7 +519,7 @@ class CurveGrid {
   }
 
   show(visible) {
-    this.visible = visible;
+    this.visible = visible.filter((i) => this.gaits[i].curves.length); // human means are the band
     for (const chart of this.charts) this.redraw(chart);
   }
 
@@ -510,8 +538,9 @@ class CurveGrid {
       parts.push(`<path class="human-mean" d="M${points(human.mean).join("L")}"/>`);
     }
     this.visible.forEach((i, n) => {
-      parts.push(`<path d="M${points(own[n].values).join("L")}" stroke="${gaitColour(i)}"
-        stroke-width="2" stroke-dasharray="${DASHES[i % 6]}"/>`);
+      const { key } = this.gaits[i];
+      parts.push(`<path d="M${points(own[n].values).join("L")}" stroke="${gaitColour(key)}"
+        stroke-width="2" stroke-dasharray="${DASHES[key]}"/>`);
     });
     const ticks = CurveGrid.ticks(low, high).map(
       (t) => `<span class="tick" style="top:${y(t)}%">${String(t).replace("-", "−")}</span>`);
@@ -521,7 +550,7 @@ class CurveGrid {
     chart.plot.setAttribute("aria-label", this.describe(own));
     chart.values.replaceChildren(...this.visible.map((i) => {
       const value = document.createElement("span");
-      value.append(lineSample(i), document.createTextNode(""));
+      value.append(lineSample(this.gaits[i].key), document.createTextNode(""));
       return value;
     }));
   }

@@ -2,8 +2,8 @@
 
 /* One viewer of gaits. `root` is the section of viewer.html, `gaits` are the payloads of
    payload.py, perhaps with one of human.py behind them. Gaits are laid over each other at the same
-   fraction of their strides; `position` counts strides from the beginning of the film. Returns a function that ends the viewer, for a page
-   that shows other gaits later. */
+   fraction of their strides; `position` counts strides from the beginning of the film. Returns a
+   function that ends the viewer, for a page that shows other gaits later. */
 function ergowalkViewer(root, gaits) {
   const find = (name) => root.querySelector("." + name);
   const play = find("play"), speed = find("speed"), strides = find("strides");

@@ -1,4 +1,4 @@
-"""Inverse dynamics of a leg from the ground up, the foot with its mass and inertia (Winter 2009)."""
+"""Inverse dynamics of a leg from the ground up, the foot with its true mass (Winter 2009)."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from ergowalk.measured.trial import Trial
 
 Array = NDArray[np.float64]
 
-SWING = 0.1
+SWING = 0.05
 """Least way [m] by which a foot passes the hip back and forth in a step."""
 
 FALL_SHARE = 0.75

@@ -96,7 +96,7 @@ def foot_loads(trial: Trial, choices: Choices) -> tuple[dict[str, FootLoad], lis
         filtered = choices.force_cutoff_hz is not None or rate > 1.5 * trial.rate
         for start, end, i, j in _contacts(raw[:, 1], plate.time):
             frames = np.flatnonzero((trial.time >= plate.time[i]) & (trial.time <= plate.time[j]))
-            if len(frames) < 3:
+            if not len(frames):
                 continue
             alone = np.zeros_like(raw)
             alone[i : j + 1] = raw[i : j + 1]
@@ -120,16 +120,15 @@ def _zero(load: Array) -> Array:
     return np.median(load[idle], axis=0) if idle.mean() > 0.1 else np.zeros(6)
 
 
-def _contacts(
-    force: Array, time: Array
-) -> list[tuple[float | None, float | None, int, int]]:
+def _contacts(force: Array, time: Array) -> list[tuple[float | None, float | None, int, int]]:
     """Instants at which the force passes :data:`CONTACT`, and first and last frame between."""
     on = force > CONTACT
     edges = np.flatnonzero(np.diff(np.concatenate([[0], on.astype(int), [0]])))
     found = []
     for i, j in edges.reshape(-1, 2):
         last = int(j) - 1
-        if not SHORTEST <= time[last] - time[i] <= LONGEST:
+        whole = i > 0 and j < len(force)  # what the record cuts may be as short as it likes
+        if time[last] - time[i] > LONGEST or (whole and time[last] - time[i] < SHORTEST):
             continue
         start = _crossing(force, time, int(i) - 1) if i > 0 else None
         end = _crossing(force, time, last) if j < len(force) else None
@@ -171,4 +170,3 @@ def _side(trial: Trial, frames: NDArray[np.int_], load: Array) -> str | None:
 def _flat(load: Array) -> bool:
     """Whether a plate tells nothing of sideways moments."""
     return not np.any(load[:, 3:5])
-

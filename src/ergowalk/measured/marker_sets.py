@@ -5,7 +5,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Collection, Mapping
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
 from pydantic import Field, model_validator
 
@@ -131,9 +131,9 @@ def read_marker_set(path: Path) -> MarkerSet:
         raise error.located(str(path)) from None
 
 
-def _tuples(data: Mapping[str, object]) -> dict[str, object]:
+def _tuples(data: Mapping[str, Any]) -> dict[str, Any]:
     """Lists of names, and single names where a list may stand, as tuples."""
-    found: dict[str, object] = {}
+    found: dict[str, Any] = {}
     for key, value in data.items():
         if isinstance(value, Mapping):
             found[key] = _tuples(value)
@@ -184,22 +184,26 @@ def choose_marker_set(names: Collection[str], wanted: str | None = None) -> Mark
     )
 
 
-def _both(**roles: str) -> dict[str, LegMarkers]:
+def _both(**roles: str) -> dict[str, Any]:
     """Legs whose names differ in a letter, written ?."""
     return {
         side: LegMarkers(
-            **{r: tuple(n.replace("?", side[0].upper()) for n in v.split()) for r, v in roles.items()}
+            **{
+                r: tuple(n.replace("?", side[0].upper()) for n in v.split())
+                for r, v in roles.items()
+            }
         )
         for side in SIDES
     }
 
 
+# each joint by the segment below it: markers on a thigh move over its bone most
 _OPENSIM_CLUSTERS = tuple(
     tuple(name.replace("?", side) for name in names.split())
     for side in "RL"
     for names in (
-        "?.Thigh.Upper ?.Thigh.Front ?.Thigh.Rear ?.Knee.Lat ?.Knee.Med",
-        "?.Shank.Upper ?.Shank.Front ?.Shank.Rear ?.Ankle.Lat ?.Ankle.Med",
+        "?.Shank.Upper ?.Shank.Front ?.Shank.Rear ?.Knee.Lat ?.Knee.Med",
+        "?.Heel ?.Midfoot.Sup ?.Midfoot.Lat ?.Toe.Lat ?.Toe.Med ?.Ankle.Lat ?.Ankle.Med",
     )
 )
 

@@ -1,4 +1,4 @@
-"""The body of a measured person: mass, measured lengths, and fractions of an anthropometric table."""
+"""The body of a measured person: mass, measured lengths, fractions of a table."""
 
 from __future__ import annotations
 

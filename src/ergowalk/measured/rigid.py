@@ -1,4 +1,4 @@
-"""Markers that the walk lacks, from a static trial, by rigid clusters; hip centres from the pelvis."""
+"""Markers that the walk lacks, by rigid clusters of a static trial; hips from the pelvis."""
 
 from __future__ import annotations
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,7 +74,7 @@ def strides_of(trial: Trial, leg: LegRecord, belt: float) -> list[Stride]:
     """The strides of a leg that the trial holds whole, with one toe-off each."""
     contacts = leg.events.contacts
     found = []
-    for start, end in zip(contacts[:-1], contacts[1:], strict=True):
+    for start, end in pairwise(contacts):
         toe_off = leg.events.toe_off_in(start, end)
         inside = trial.time[0] <= start and end <= trial.time[-1]
         if inside and toe_off is not None and SHORTEST <= end - start <= LONGEST:

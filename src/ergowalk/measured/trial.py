@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -153,7 +154,9 @@ def _shank(markers: Mapping[str, Array], marker_set: MarkerSet, file: str) -> fl
             np.mean([markers[n] for n in names], axis=0) for names in (leg.knee, leg.ankle)
         )
         length = np.linalg.norm(knee - ankle, axis=1)
-        lengths += [float(np.median(length[np.isfinite(length)]))] if np.isfinite(length).any() else []
+        lengths += (
+            [float(np.median(length[np.isfinite(length)]))] if np.isfinite(length).any() else []
+        )
     if not lengths:
         raise RecordingError(
             "are never seen together", "check the map of the markers", field="knee and ankle",
@@ -189,7 +192,7 @@ def _whole(
     needed = marker_set.used()
     toes = [name for side in marker_set.sides for name in marker_set.leg(side).toe]
     for name in dict.fromkeys([*needed, *(t for t in toes if t in markers)]):
-        seen = np.isfinite(markers[name]).all(axis=1)
+        seen = _seen(markers[name])
         if seen.sum() < 4:
             if name in needed:
                 raise RecordingError(
@@ -198,7 +201,7 @@ def _whole(
             continue
         lost = longest_gap(seen)
         filled[name] = _filled(markers[name], seen, most)
-        if 0 < lost:
+        if lost > 0:
             done = "filled in" if lost <= most else "too long to be filled in"
             notes.append(f"{name} is lost for {lost} frames at most: {done}")
     points: dict[tuple[str, str], Array] = {}
@@ -216,11 +219,15 @@ def _whole(
     return points, notes
 
 
+def _seen(values: Array) -> NDArray[np.bool_]:
+    return np.asarray(np.isfinite(values).all(axis=1), dtype=bool)
+
+
 def _filled(values: Array, seen: NDArray[np.bool_], most: int) -> Array:
     """Gaps of up to ``most`` frames filled; longer ones stay."""
     filled = fill_gaps(np.where(seen[:, None], values, np.nan))
     at = np.flatnonzero(seen)
-    for first, last in zip(at[:-1], at[1:], strict=True):
+    for first, last in pairwise(at):
         if last - first - 1 > most:
             filled[first + 1 : last] = np.nan
     return filled
@@ -241,8 +248,8 @@ def _lost(points: Mapping[tuple[str, str], Array], recording: Recording) -> Reco
     worst = min(points, key=lambda key: np.isfinite(points[key]).all(axis=1).sum())
     share = np.isfinite(points[worst]).all(axis=1).mean()
     return RecordingError(
-        f"is seen in {share:.0%} of the frames; no {SHORTEST_TRIAL:g} s remain in which every point "
-        f"is there (gaps of up to {LONGEST_GAP:g} s are filled)",
+        f"is seen in {share:.0%} of the frames; no {SHORTEST_TRIAL:g} s remain in which every "
+        f"point is there (gaps of up to {LONGEST_GAP:g} s are filled)",
         "give another trial, or fill the gaps",
         field=" ".join(worst),
         file=recording.file,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -166,9 +167,7 @@ def measure(
         legs[side] = LegRecord(side, events[side], angles, loads[side], found)
     strides = tuple(s for leg in legs.values() for s in strides_of(trial, leg, belt))
     _check_strides(trial, strides, events)
-    return MeasuredWalk(
-        trial, choices, body, lengths, legs, strides, (*trial.notes, *notes, *told)
-    )
+    return MeasuredWalk(trial, choices, body, lengths, legs, strides, (*trial.notes, *notes, *told))
 
 
 def _events(
@@ -202,7 +201,7 @@ def _mass(
     masses = []
     for side, load in loads.items():
         contacts = events[side].contacts
-        for start, end in zip(contacts[:-1], contacts[1:], strict=True):
+        for start, end in pairwise(contacts):
             toe_off = events[side].toe_off_in(start, end)
             if toe_off is not None and load.covers(trial.time, start, toe_off):
                 time = np.linspace(start, end, 2001)
@@ -220,9 +219,7 @@ def _mass(
     return mass, [f"mass {mass:.1f} kg, by what the plates carry over {len(masses)} strides"]
 
 
-def _check_strides(
-    trial: Trial, strides: tuple[Stride, ...], events: Mapping[str, Events]
-) -> None:
+def _check_strides(trial: Trial, strides: tuple[Stride, ...], events: Mapping[str, Events]) -> None:
     if not strides:
         raise _no_stride(trial, events, "no leg has a whole stride")
     toe_off = float(np.mean([stride.rhythm[2] for stride in strides]))

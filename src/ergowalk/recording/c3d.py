@@ -142,11 +142,12 @@ def _plate(found: dict[str, Any], i: int, duration: float, file: str) -> Plate |
         )
     stated = str(found[f"unit_moment_{i}"]).replace(" ", "").lower()
     scale = 1e-3 if "mm" in stated else 1e-2 if "cm" in stated else 1.0
-    centre = np.tile(corners.mean(axis=0), (len(force), 1))
-    time = np.arange(len(force)) * (duration / len(force))
+    centre: Array = np.tile(corners.mean(axis=0), (len(force), 1))
+    time: Array = np.arange(len(force)) * (duration / len(force))
     place = str(found[f"unit_position_{i}"]).strip().lower()
     unit = place if place in UNITS else None
-    return Plate(f"force plate {i + 1}", time, force, scale * moment, centre, unit)
+    moment = np.asarray(scale * moment, dtype=float)
+    return Plate(f"force plate {i + 1}", time, force, moment, centre, unit)
 
 
 def _damaged(reason: str, file: str) -> RecordingError:

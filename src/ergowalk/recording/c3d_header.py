@@ -19,7 +19,7 @@ _ORDERS = {84: "<", 85: "<", 86: ">"}
 
 @dataclass(frozen=True)
 class C3DHeader:
-    """Counts of the header block: points and analog samples of a frame, frames, bytes of a number."""
+    """Counts of the header: points and analog samples of a frame, frames, bytes of a number."""
 
     points: int
     analogs: int
@@ -58,9 +58,7 @@ def check_header(content: bytes, file: str) -> C3DHeader:
     if header.last_frame == 0xFFFF:  # the header cannot count further: by the bytes that are there
         frames = 1
     if frames * (4 * header.points + header.analogs) > MOST_NUMBERS:
-        raise RecordingError(
-            f"claims more than {MOST_NUMBERS} numbers", "cut the trial", file=file
-        )
+        raise RecordingError(f"claims more than {MOST_NUMBERS} numbers", "cut the trial", file=file)
     needed = (header.data_block - 1) * BLOCK + frames * header.frame_bytes
     if needed > len(content):
         raise _truncated(needed, len(content), file)

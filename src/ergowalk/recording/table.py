@@ -130,9 +130,7 @@ def _vectors(table: Array, columns: list[_Column]) -> Array:
     return found
 
 
-def _plates(
-    table: Array, time: Array, loads: list[_Column], unit: str | None
-) -> tuple[Plate, ...]:
+def _plates(table: Array, time: Array, loads: list[_Column], unit: str | None) -> tuple[Plate, ...]:
     plates = []
     for name in dict.fromkeys(column.name.split("|")[0] for column in loads):
         parts = {k: [c for c in loads if c.name == f"{name}|{k}"] for k in "fcm"}

@@ -92,9 +92,7 @@ def numbers(rows: list[list[str]], width: int, first_line: int, file: str) -> Ar
         For a cell that is no number, a row that is too long, or more than can be held.
     """
     if len(rows) * width > MOST_NUMBERS:
-        raise RecordingError(
-            f"holds more than {MOST_NUMBERS} numbers", "cut the trial", file=file
-        )
+        raise RecordingError(f"holds more than {MOST_NUMBERS} numbers", "cut the trial", file=file)
     found = np.full((len(rows), width), np.nan)
     for i, row in enumerate(rows):
         while len(row) > width and not row[-1].strip():

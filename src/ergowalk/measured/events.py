@@ -75,7 +75,7 @@ def events_by_feet(trial: Trial, side: str) -> Events:
 
 
 def _between(first: float, second: float, share: float) -> float:
-    return first + share * (second - first)
+    return float(first + share * (second - first))
 
 
 def _inside(instants: list[float], time: Array) -> tuple[float, ...]:

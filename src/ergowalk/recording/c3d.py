@@ -143,7 +143,7 @@ def _plate(found: dict[str, Any], i: int, duration: float, file: str) -> Plate |
     stated = str(found[f"unit_moment_{i}"]).replace(" ", "").lower()
     scale = 1e-3 if "mm" in stated else 1e-2 if "cm" in stated else 1.0
     centre: Array = np.tile(corners.mean(axis=0), (len(force), 1))
-    time: Array = np.arange(len(force)) * (duration / len(force))
+    time = np.linspace(0.0, duration, len(force), endpoint=False)
     place = str(found[f"unit_position_{i}"]).strip().lower()
     unit = place if place in UNITS else None
     moment = np.asarray(scale * moment, dtype=float)

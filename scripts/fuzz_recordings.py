@@ -250,7 +250,9 @@ def main() -> int:
             f"walk, {sum(bad.values())} wrong; {time.monotonic() - start:.0f} s"
         )
         if kind == "c3d" and DEATHS:
-            print(f"c3d: reading processes ended by signals {dict(DEATHS)}, each told in a sentence")
+            print(
+                f"c3d: reading processes ended by signals {dict(DEATHS)}, each told in a sentence"
+            )
     return 1 if wrong else 0
 
 

@@ -152,9 +152,10 @@ class Fitted:
             return []
         solution = self.result.solution
         verdict = "accepted by the audit" if self.result.accepted else "NOT ACCEPTABLE"
+        hint = "" if self.result.accepted else _HINT
         return [
             ("the cheapest", f"{solution.energy_per_metre:.2f} J/m in these corridors, {verdict}: "
-             f"{solution.status}"),
+             f"{solution.status}{hint}"),
             ("", f"{self.folder / SOLVED}: {', '.join(self.result.files)}"),
         ]  # fmt: skip
 
@@ -181,6 +182,12 @@ class Fitted:
         if self.result is not None:
             found["cheapest"] = self.result.as_dict()
         return found
+
+
+_HINT = (
+    "; a model with both hips in one point may have no walk this near to the person's: widen the "
+    "corridors with --sd-floor"
+)
 
 
 def _strides(count: int) -> str:

@@ -1,8 +1,8 @@
 """Damages recorded files and reads them: ``python scripts/fuzz_recordings.py --count 10000``.
 
-Each case is one file of a made-up walk, damaged by a seeded hand and read; of those that can be read
-every tenth is measured, too. Right is a walk, or one sentence that says why not; wrong is any other exception, a reader
-that takes longer than its time, or a process that dies.
+Each case is one file of a made-up walk, damaged by a seeded hand and read; of those that can be
+read one in ten is measured, too. Right is a walk, or one sentence that says why not; wrong is any
+other exception, a reader that takes longer than its time, or a process that dies untold.
 """
 
 from __future__ import annotations

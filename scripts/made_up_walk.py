@@ -1,8 +1,8 @@
 """A made-up walker whose every curve is known: markers and force plates of Winter's mean angles.
 
-Legs by the human means of hip, knee and ankle angle, half a stride apart; the lower of both feet is
-on the ground, and the hips go as fast as the loaded metatarsals fall behind. Forces are the human mean
-reactions, their point runs from heel to metatarsals.
+Legs by the human means of hip, knee and ankle angle, half a stride apart; the lower of both feet
+is on the ground, and the hips go as fast as the loaded metatarsals fall behind. Forces are the
+human mean reactions, their point runs from heel to metatarsals.
 """
 
 from __future__ import annotations
@@ -243,7 +243,7 @@ def _section(groups: dict[str, dict[str, bytes]], start: int = 0, blocks: int = 
         out += struct.pack("<bb", len(name), -number) + name + struct.pack("<hB", 3, 0)
         for key, value in parameters.items():
             if key == "DATA_START":
-                value = _ints(start)  # noqa: PLW2901 - known only now
+                value = _ints(start)
             name = key.encode("ascii")
             content = value + b"\0"  # no description
             step = 0 if (group, key) == last else 2 + len(content)

@@ -57,9 +57,9 @@ def with_masses(body: Body, thigh: float, shank: float, foot: float) -> Body:
 
 
 # Subject WM, Winter (2009), appendix A: raw markers of table A.1 and forces of A.5.
-# Segment lines: hip to knee, knee (lateral epicondyle) to ankle, ankle to metatarsals for the foot's
-# inertia, heel to metatarsals for its rate in the power, hip to rib cage for the trunk. The filter
-# of the tables takes off 3 dB at 4.95 Hz: there it meets the positions of A.2 within 0.04 mm.
+# Segment lines: hip to knee, knee (lateral epicondyle) to ankle, ankle to metatarsals for the
+# foot's inertia, heel to metatarsals for its rate in the power, hip to rib cage for the trunk. The
+# filter of the tables takes off 3 dB at 4.95 Hz: there its positions are those of A.2 to 0.04 mm.
 
 HEEL_CONTACT, TOE_OFF, NEXT_CONTACT = 28, 70, 97
 """Frames of the tables, the first of which is 1."""
@@ -120,9 +120,9 @@ def test_stride_of_wm_is_that_of_the_tables() -> None:
 
 
 # GaitAnalysisToolKit. Its reference was made with an effective cut-off of 4.0 Hz (there the angles
-# agree to hundredths of a degree), with the mass fraction and radius of gyration of the foot for all
-# three segments (0.0145 and 0.475: its forces grow by the same 0.142 N/kg from joint to joint), the
-# foot along heel to metatarsals.
+# agree to hundredths of a degree), with the mass fraction and radius of gyration of the foot for
+# all three segments (0.0145 and 0.475: its forces grow by the same 0.142 N/kg from joint to joint),
+# and with the foot along heel to metatarsals.
 
 MASS = 67.2
 

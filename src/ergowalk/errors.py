@@ -79,6 +79,10 @@ class GaitFileError(InputError):
     """A stored gait that cannot be read."""
 
 
+class RecordingError(InputError):
+    """A recording of a walk that cannot be read, or from which no walk can be measured."""
+
+
 class OutputError(InputError):
     """A place that cannot be written."""
 

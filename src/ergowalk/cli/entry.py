@@ -63,6 +63,12 @@ def _compare(arguments: Namespace) -> int:
     return ACCEPTABLE
 
 
+def _fit(arguments: Namespace) -> int:
+    from ergowalk.cli.fit import run_fit
+
+    return ACCEPTABLE if run_fit(arguments) else NOT_ACCEPTABLE
+
+
 def _price(arguments: Namespace) -> int:
     from ergowalk.cli.price import run_price
 
@@ -123,6 +129,7 @@ COMMANDS: dict[str, Callable[[Namespace], int]] = {
     "solve": _solve,
     "audit": _audit,
     "compare": _compare,
+    "fit": _fit,
     "price": _price,
     "report": _report,
     "export": _export,

@@ -53,6 +53,7 @@ class _Compared:
     """One stored gait and what was found."""
 
     path: Path
+    measured: bool
     acceptable: bool
     energy_per_metre: float
     limits: str
@@ -61,6 +62,7 @@ class _Compared:
     def as_dict(self) -> dict[str, object]:
         return {
             "file": str(self.path),
+            "measured": self.measured,
             "acceptable": self.acceptable,
             "energy_per_metre": self.energy_per_metre,
             "limits": self.limits,
@@ -68,6 +70,9 @@ class _Compared:
         }
 
     def text(self) -> str:
+        if self.measured:
+            head = f"E = {self.energy_per_metre:.2f} J/m, measured"
+            return f"{self.path}: {head}\n{self.comparison.table()}"
         mark = "" if self.acceptable else " (NOT ACCEPTABLE)"
         energy = f"E = {self.energy_per_metre:.2f} J/m with {self.limits}"
         return f"{self.path}{mark}: {energy}\n{self.comparison.table()}"
@@ -79,6 +84,7 @@ def _compared(path: Path) -> _Compared:
     try:
         return _Compared(
             path=path,
+            measured=solution.measured,
             acceptable=dataset.attrs.get("acceptable") == 1,
             energy_per_metre=solution.energy_per_metre,
             limits=solution.problem.limits.sentence(),

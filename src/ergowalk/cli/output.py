@@ -77,17 +77,18 @@ def write_bytes(path: Path, content: bytes) -> None:
             draft.unlink()
 
 
-def check_not_foreign(path: Path, content: bytes) -> None:
-    """Refuse to replace somebody's own file: another content, and no gait beside it.
+def check_not_foreign(path: Path, content: bytes, mark: str = "gait.nc") -> None:
+    """Refuse to replace somebody's own file: another content, and no ``mark`` beside it.
 
-    A result's folder holds ``gait.nc``, and there everything may be replaced.
+    A result's folder holds ``gait.nc``, or what else marks it, and there everything may be
+    replaced.
 
     Raises
     ------
     OutputError
         If the file would be lost.
     """
-    if os.path.exists(path.parent / "gait.nc") or not os.path.exists(path):
+    if os.path.exists(path.parent / mark) or not os.path.exists(path):
         return
     try:
         same = path.read_bytes() == content
@@ -95,7 +96,7 @@ def check_not_foreign(path: Path, content: bytes) -> None:
         same = False
     if not same:
         raise OutputError(
-            "would be replaced, and is not the result of a solve",
+            f"would be replaced, and no {mark} beside it says that it is a result",
             "choose another folder with -o",
             file=str(path),
         )

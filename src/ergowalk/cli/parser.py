@@ -58,6 +58,7 @@ def build_parser() -> Parser:
     _add_solve(commands)
     _add_audit(commands)
     _add_compare(commands)
+    _add_fit(commands)
     _add_price(commands)
     _add_report(commands)
     _add_export(commands)
@@ -190,6 +191,82 @@ def _add_compare(commands: Any) -> None:
     )
     parser.add_argument("gaits", nargs="+", type=_path, metavar="GAIT.nc", help="stored gaits")
     _add_json(parser)
+
+
+def _add_fit(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "fit",
+        "turn a recorded walk into this person's problem",
+        "Measures joint angles, moments, powers and the energy per metre of a recorded walk and "
+        "writes problem.toml and corridors.csv, which 'ergowalk solve' takes, and measured.nc, "
+        "which 'ergowalk compare' and 'ergowalk report' take.",
+    )
+    parser.add_argument(
+        "files",
+        nargs="+",
+        type=_path,
+        metavar="FILE",
+        help="the files of one trial: C3D, TRC or a table (CSV, TSV, TXT) with the markers, and "
+        "MOT, STO or tables with forces",
+    )
+    parser.add_argument(
+        "--static", type=_path, metavar="FILE", help="a trial of the person standing still"
+    )
+    parser.add_argument(
+        "--markers", metavar="SET", help="a marker set by name or a TOML file (default: by names)"
+    )
+    parser.add_argument("--units", choices=("mm", "cm", "m"), help="unit of the markers' lengths")
+    parser.add_argument(
+        "--flip-forces", action="store_true", help="the plates give the force on the ground"
+    )
+    parser.add_argument(
+        "--mass", type=float, metavar="KG", help="body mass (default: what the plates carry)"
+    )
+    parser.add_argument(
+        "--height", type=float, metavar="M", help="body height (default: by the legs)"
+    )
+    parser.add_argument(
+        "--sex", choices=("male", "female"), default="male", help="for tables that know two"
+    )
+    parser.add_argument(
+        "--cutoff",
+        type=float,
+        default=6.0,
+        metavar="HZ",
+        help="cut-off of the zero-lag filter of markers (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--force-cutoff",
+        type=float,
+        metavar="HZ",
+        help="the same for forces (default: what the rate of the markers cannot hold)",
+    )
+    parser.add_argument(
+        "--sd-floor",
+        type=float,
+        default=5.0,
+        metavar="DEG",
+        help="least standard deviation of an angle in the corridors (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--kinematic-events", action="store_true", help="find contacts without the plates"
+    )
+    parser.add_argument("--name", help="a name for the walk (default: that of the first file)")
+    parser.add_argument(
+        "--solve",
+        action="store_true",
+        help="also find the cheapest walk in the same corridors, into DIR/solved",
+    )
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=_path,
+        metavar="DIR",
+        help="folder for the result; files there are replaced (default: ergowalk-NAME)",
+    )
+    _add_json(parser)
+    parser.add_argument("--quiet", action="store_true", help="no progress on standard error")
 
 
 def _add_price(commands: Any) -> None:

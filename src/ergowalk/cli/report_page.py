@@ -52,5 +52,7 @@ def _as_dict(path: Path, solution: Solution) -> dict[str, object]:
 
 def _line(path: Path, solution: Solution) -> str:
     found = _as_dict(path, solution)
+    if solution.measured:
+        return f"{path}: E = {found['energy_per_metre']:.2f} J/m, measured"
     mark = "" if found["acceptable"] else " (NOT ACCEPTABLE)"
     return f"{path}{mark}: E = {found['energy_per_metre']:.2f} J/m with {found['limits']}"

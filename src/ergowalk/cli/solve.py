@@ -36,6 +36,22 @@ def run_solve(arguments: Namespace) -> bool:
     Raises
     ------
     InputError
+        As :func:`solve_and_write`.
+    """
+    result = solve_and_write(arguments)
+    if arguments.json:
+        emit_json(result.as_dict())
+    else:
+        emit(result.table())
+    return result.accepted
+
+
+def solve_and_write(arguments: Namespace) -> Result:
+    """Solve and write, without printing.
+
+    Raises
+    ------
+    InputError
         If the problem cannot be used or the folder cannot be written, before anything is
         solved.
     """
@@ -56,11 +72,7 @@ def run_solve(arguments: Namespace) -> bool:
         figures = [] if arguments.no_figures else _draw(stored, human, folder)
         result = _told(stored, human, folder, ("gait.nc", *inputs, *figures))
         write_text(folder / "report.md", result.markdown())
-    if arguments.json:
-        emit_json(result.as_dict())
-    else:
-        emit(result.table())
-    return result.accepted
+    return result
 
 
 def _problem(arguments: Namespace) -> GaitProblem:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ergowalk.comparison.signals import SD_FLOOR
-from ergowalk.corridors import SIGNALS
+from ergowalk.corridors import BUILT_IN, SIGNALS
 
 Array = NDArray[np.float64]
 
@@ -80,7 +80,8 @@ class Comparison:
         """The comparison as plain text, one line per signal."""
         rows = [_HEADER, *(_row(signal) for signal in self.signals)]
         widths = [max(len(row[i]) for row in rows) for i in range(len(_HEADER))]
-        lines = [f"leg 1 against {self.source}, mean +- SD between people"]
+        spread = " between people" if self.source in BUILT_IN else ""
+        lines = [f"leg 1 against {self.source}, mean +- SD{spread}"]
         for row in rows:
             cells = [row[0].ljust(widths[0])]
             cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]

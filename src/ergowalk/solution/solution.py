@@ -49,6 +49,11 @@ class Solution:
         return bool(self.dataset.attrs["acceptable"])
 
     @property
+    def measured(self) -> bool:
+        """Whether this is a person's walk from 'ergowalk fit' and not the answer of a problem."""
+        return self.dataset.attrs.get("method") == "measured"
+
+    @property
     def energy_per_metre(self) -> float:
         """E of (10) [J/m] on the dense grid, as stored."""
         return float(self.dataset.attrs["energy_per_metre"])

@@ -56,9 +56,13 @@ def headline(solution: Solution, acceptable: bool) -> Rows:
     weight = body.total_mass * body.gravity_m_s2
     speed = 2 * problem.step_length_m / problem.stride_time_s
     verdict = "acceptable" if acceptable else "NOT ACCEPTABLE"
+    limits = [("with the limits", problem.limits.sentence())]
+    status = f"{verdict}: {solution.status}"
+    if solution.measured:
+        limits, status = [], solution.status
     return [
         ("E", f"{energy:.2f}{bar} J/m"),
-        ("with the limits", problem.limits.sentence()),
+        *limits,
         ("cost of transport", f"{solution.cost_of_transport:.4f} (E / M g)"),
         (
             "walk",
@@ -68,7 +72,7 @@ def headline(solution: Solution, acceptable: bool) -> Rows:
         ("body", f"{body.total_mass:g} kg"),
         ("rhythm", _rhythm(solution)),
         *_peaks(solution, weight),
-        ("status", f"{verdict}: {solution.status}"),
+        ("status", status),
     ]
 
 

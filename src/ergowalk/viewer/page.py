@@ -10,7 +10,7 @@ from typing import Any
 
 from ergowalk.audit import AuditReport
 from ergowalk.comparison import Comparison, compare, human_of
-from ergowalk.corridors import SIGNALS
+from ergowalk.corridors import BUILT_IN, SIGNALS
 from ergowalk.errors import GaitFileError, InputError
 from ergowalk.quantities import JOINTS
 from ergowalk.solution import Solution
@@ -97,7 +97,8 @@ class _Report:
         human = human_of(solution.dataset, solution.folder)
         audit, comparison = solution.audit(), compare(solution.dataset, human)
         payload = gait_payload(solution.dataset, human, label)
-        payload["acceptable"] = solution.acceptable and audit.accepted
+        # a person is no nine-link model: a measured walk has nothing to be accepted
+        payload["acceptable"] = solution.measured or (solution.acceptable and audit.accepted)
         return cls(solution, label, audit, comparison, payload)
 
     def named(self, label: str) -> _Report:
@@ -119,7 +120,7 @@ class _Report:
             figures=_table((), rows, "headline figures"),
             work=_work_table(self.solution),
             comparison=_comparison_table(self.comparison),
-            audit=_audit_table(self.audit),
+            audit=_MEASURED if self.solution.measured else _audit_table(self.audit),
             problem=_listing(str(self.solution.dataset.attrs["problem"]), "problem file"),
             version=escape(str(self.solution.dataset.attrs.get("ergowalk_version", "?"))),
             commands=_listing(_commands(self.solution), "commands"),
@@ -137,6 +138,9 @@ def _payloads(reports: Sequence[_Report], human: bool) -> list[dict[str, Any]]:
         first = reports[0].solution
         found.append(human_payload(first.dataset, human_of(first.dataset, first.folder)))
     return found
+
+
+_MEASURED = "<p>A measured walk: a person is no nine-link model, so it is not audited.</p>"
 
 
 def _report(solution: Solution, file: str | None) -> _Report:
@@ -215,7 +219,8 @@ def _comparison_table(comparison: Comparison) -> str:
             )
         )
     missing = f"<p>No mean and SD for {escape(', '.join(comparison.missing))}.</p>"
-    source = f"<p>Leg 1 against {escape(comparison.source)}, mean ± SD between people.</p>"
+    spread = " between people" if comparison.source in BUILT_IN else ""
+    source = f"<p>Leg 1 against {escape(comparison.source)}, mean ± SD{spread}.</p>"
     table = _table(head, rows, "comparison with human walking")
     return source + table + (missing if comparison.missing else "")
 

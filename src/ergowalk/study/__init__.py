@@ -6,10 +6,10 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ergowalk.study.collect import collect
     from ergowalk.study.definition import Sweep, read_sweep
     from ergowalk.study.people import StepsOfPeople, steps_of_people
     from ergowalk.study.preference import ENERGY, Criterion, Preferred, preferred
+    from ergowalk.study.results import collect
     from ergowalk.study.running import Tally, sweep
 
 _HOMES = {
@@ -19,7 +19,7 @@ _HOMES = {
     "StepsOfPeople": "people",
     "Sweep": "definition",
     "Tally": "running",
-    "collect": "collect",
+    "collect": "results",
     "preferred": "preference",
     "read_sweep": "definition",
     "steps_of_people": "people",

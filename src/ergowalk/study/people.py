@@ -131,4 +131,4 @@ def _mean_sd(values: Array) -> tuple[Array, Array]:
     with np.errstate(invalid="ignore", divide="ignore"):
         mean = np.where(known, values, 0.0).sum(axis=0) / count
         squares = np.where(known, (values - mean) ** 2, 0.0).sum(axis=0)
-        return mean, np.sqrt(squares / (count - 1))
+        return mean, np.sqrt(squares / np.where(count > 1, count - 1, np.nan))

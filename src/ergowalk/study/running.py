@@ -126,7 +126,7 @@ def sweep(
         If the sweep cannot be used, the folder not written, or the cluster not reached or lost.
         What was done until then is kept: start the same sweep again.
     """
-    from ergowalk.study.collect import collect
+    from ergowalk.study.results import collect
 
     if workers is not None and scheduler is not None:
         raise SweepError("have their own workers", "leave out one", field="workers and scheduler")

@@ -1,6 +1,7 @@
 """A gait to look at: one HTML file with the walker in motion, its curves and its figures."""
 
+from ergowalk.viewer.map_page import map_html, packed
 from ergowalk.viewer.page import report_html
 from ergowalk.viewer.payload import gait_payload
 
-__all__ = ["gait_payload", "report_html"]
+__all__ = ["gait_payload", "map_html", "packed", "report_html"]

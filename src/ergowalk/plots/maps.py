@@ -79,7 +79,7 @@ def draw_map(landscape: Landscape, title: str = "") -> Figure:
             if both:
                 _speeds(panels[1], landscape)
             if filled is not None:
-                figure.colorbar(filled, ax=list(panels), label="E [J/m]", shrink=0.9)
+                figure.colorbar(filled, ax=list(panels), label="E [J/m]", shrink=0.9, format="%.1f")
         if title:
             figure.suptitle(title, fontsize=10.0)
     return figure
@@ -106,7 +106,6 @@ def _swept(axes: Axes, found: Landscape) -> Any:
     axes.set_title("E over what was swept" if found.speed is None else "E(L, T)", pad=14)
     if found.speed is None:
         return filled
-    axes.set_title("E(L, T)")
     low, high = np.array(axes.get_xlim()), np.array(axes.get_ylim())
     for speed in SPEEDS:
         _line_of_speed(axes, speed, low, high)

@@ -1,7 +1,8 @@
-"""Stand-ins for a solver, as a sweep takes them: ``standins:NAME``.
+"""A stand-in for a solver, as a sweep takes it: ``standins:walk``.
 
-Each makes up a gait in milliseconds whose E is a known function of L and T. What goes wrong is
-decided by the problem alone, or by a file whose path is in the environment.
+It makes up gaits in milliseconds whose E is a known function of L and T. The name of the problem,
+which is not part of a key, says what else happens. Beside the folder of the sweep, FOLDER.log gets
+a line for each case that is begun, with its process, and while there is FOLDER.gate cases wait.
 """
 
 from __future__ import annotations
@@ -23,9 +24,6 @@ from ergowalk.solution import Solution
 from ergowalk.study.searching import searched
 
 JOINTS = ("hip", "knee", "ankle", "metatarsal")
-
-LOG = "ERGOWALK_TEST_LOG"
-"""Environment variable: a file that gets a line for each case that is begun."""
 
 
 def energy(length: float, stride: float) -> float:
@@ -62,31 +60,21 @@ def gait(problem: GaitProblem, acceptable: bool = True) -> Solution:
     return Solution(dataset)
 
 
-def _walk(problem: GaitProblem, **choices: Any) -> Solution:
-    return gait(problem)
-
-
 def walk(task: dict[str, Any]) -> dict[str, Any]:
-    """Every case has its gait at once."""
-    _log(task)
+    """The gait of a case at once, or what the name of its problem says instead."""
+    folder = Path(task["gait"]).parents[2]
+    with open(folder.with_suffix(".log"), "a") as file:
+        file.write(f"{Path(task['gait']).stem} {os.getpid()}\n")
+    gate = folder.with_suffix(".gate")
+    while gate.exists():
+        time.sleep(0.02)
     return searched(task, _walk)
 
 
-def slow(task: dict[str, Any]) -> dict[str, Any]:
-    """As walk, after half a second."""
-    _log(task)
-    time.sleep(0.5)
-    return searched(task, _walk)
-
-
-def troubled(task: dict[str, Any]) -> dict[str, Any]:
-    """Short steps hang, and so on: a case for every way to fail."""
-    _log(task)
-    return searched(task, _troubled)
-
-
-def _troubled(problem: GaitProblem, **choices: Any) -> Solution:
-    what = TROUBLES.get(round(problem.step_length_m, 3))
+def _walk(problem: GaitProblem, **choices: Any) -> Solution:
+    if problem.name == "slow":
+        time.sleep(SLOW_S)
+    what = TROUBLES.get(round(problem.step_length_m, 3)) if problem.name == "troubled" else ""
     if what == "hang":
         hang()
     if what == "memory":
@@ -98,6 +86,8 @@ def _troubled(problem: GaitProblem, **choices: Any) -> Solution:
     return gait(problem, acceptable=what != "rejected")
 
 
+SLOW_S = 0.5
+
 TROUBLES = {0.51: "hang", 0.52: "memory", 0.53: "crash", 0.54: "error", 0.55: "rejected"}
 
 
@@ -106,20 +96,4 @@ def hang() -> None:
     for number in (signal.SIGTERM, signal.SIGINT, signal.SIGALRM):
         signal.signal(number, signal.SIG_IGN)
     while True:
-        sum(range(10**7))  # one call of C code after the other
-
-
-def gated(task: dict[str, Any]) -> dict[str, Any]:
-    """As walk, but a case waits as long as the file of the gate is there."""
-    _log(task)
-    gate = Path(task["gait"]).parents[2].with_suffix(".gate")
-    while gate.exists():
-        time.sleep(0.02)
-    return searched(task, _walk)
-
-
-def _log(task: dict[str, Any]) -> None:
-    """Note that a case has begun, and in which process."""
-    if LOG in os.environ:
-        with open(os.environ[LOG], "a") as file:
-            file.write(f"{Path(task['gait']).stem} {os.getpid()}\n")
+        time.sleep(60)

@@ -7,6 +7,7 @@ a line for each case that is begun, with its process, and while there is FOLDER.
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import signal
@@ -63,7 +64,7 @@ def gait(problem: GaitProblem, acceptable: bool = True) -> Solution:
 def walk(task: dict[str, Any]) -> dict[str, Any]:
     """The gait of a case at once, or what the name of its problem says instead."""
     folder = Path(task["gait"]).parents[2]
-    with open(folder.with_suffix(".log"), "a") as file:
+    with contextlib.suppress(OSError), open(folder.with_suffix(".log"), "a") as file:
         file.write(f"{Path(task['gait']).stem} {os.getpid()}\n")
     gate = folder.with_suffix(".gate")
     while gate.exists():

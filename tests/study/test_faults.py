@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import xarray as xr
 
 from ergowalk.errors import OutputError, SweepError
 from ergowalk.study import collect
@@ -60,11 +61,13 @@ def undisturbed(here: str, tmp_path_factory: pytest.TempPathFactory) -> dict[str
 
 
 def whole(folder: Path) -> None:
-    """Every record can be read and has its gait."""
+    """Every record can be read, and so can its gait."""
     store = Store(folder)
     for path in folder.glob("cases/*/*.json"):
-        assert json.loads(path.read_bytes())["key"] == path.stem
-        assert store.record(path.stem) is not None
+        record = json.loads(path.read_bytes())
+        assert record["key"] == path.stem
+        with xr.open_dataset(store.gait(path.stem)) as gait:
+            assert gait.load().attrs["energy_per_metre"] == record["energy_per_metre"]
 
 
 # --- a cluster started by hand, in other processes ---------------------------------------------
@@ -179,18 +182,19 @@ if __name__ == "__main__":
 
 
 @contextlib.contextmanager
-def client(tmp_path: Path, problem: str = "slow") -> Iterator[subprocess.Popen[str]]:
+def client(tmp_path: Path, workers: int) -> Iterator[subprocess.Popen[str]]:
     """``ergowalk sweep`` in a process of its own, with the stand-in."""
     (tmp_path / "client.py").write_text(CLIENT)
     (tmp_path / "problem.toml").write_text(
-        f'name = "{problem}"\nstep_length_m = 0.76\nstride_time_s = 1.14\n'
+        'name = "slow"\nstep_length_m = 0.76\nstride_time_s = 1.14\n'
     )
     (tmp_path / "small.toml").write_text(
         'name = "small"\nproblem = "problem.toml"\n'
         "[grid]\nstep_length_m = {low = 0.6, high = 0.8, count = 3}\nstride_time_s = [1.0, 1.2]\n"
     )
+    command = [sys.executable, "client.py", "sweep", "small.toml", "-o", "out"]
     process = subprocess.Popen(
-        [sys.executable, "client.py", "sweep", "small.toml", "-o", "out", "--workers", "2", SOLVER],
+        [*command, "--workers", str(workers), SOLVER],
         cwd=tmp_path,
         env=ENVIRONMENT,
         stdout=subprocess.PIPE,
@@ -208,7 +212,7 @@ def test_a_client_that_is_killed_leaves_whole_results_and_nobody_at_work(
     here: str, tmp_path: Path, undisturbed: dict[str, Any]
 ) -> None:
     folder = tmp_path / "out"
-    with client(tmp_path) as process:
+    with client(tmp_path, workers=2) as process:
         until(lambda: len(list(folder.glob("cases/*/*.json"))) >= 2, "two results")
         process.kill()
         process.wait()
@@ -223,7 +227,7 @@ def test_a_client_that_is_killed_leaves_whole_results_and_nobody_at_work(
 
 def test_an_interrupt_ends_the_sweep_with_its_index_written(tmp_path: Path) -> None:
     folder = tmp_path / "out"
-    with client(tmp_path) as process:
+    with client(tmp_path, workers=1) as process:
         until(lambda: len(list(folder.glob("cases/*/*.json"))) >= 1, "a result")
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=PATIENCE_S)
@@ -231,7 +235,7 @@ def test_an_interrupt_ends_the_sweep_with_its_index_written(tmp_path: Path) -> N
     assert out == ""
     assert err.rstrip().endswith("ergowalk: interrupted")
     assert "Traceback" not in err
-    assert "2 workers, dashboard http://127.0.0.1:" in err
+    assert "1 workers, dashboard http://127.0.0.1:" in err
     assert len(index(folder)) == len(list(folder.glob("cases/*/*.json"))) >= 1
     assert (collect(folder)["status"] == "missing").any()
     assert not any(alive(pid) for pid in pids(folder))
@@ -245,7 +249,7 @@ def little_disk(tmp_path: Path) -> Iterator[Path]:
     """A disk with room for a few gaits; needs the right to mount one."""
     place = tmp_path / "disk"
     place.mkdir()
-    command = ["mount", "-t", "tmpfs", "-o", "size=150k", "none", str(place)]
+    command = ["mount", "-t", "tmpfs", "-o", "size=64k", "none", str(place)]
     try:
         subprocess.run(command, check=True, capture_output=True, timeout=10)
     except (OSError, subprocess.SubprocessError):

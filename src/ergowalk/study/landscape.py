@@ -116,25 +116,21 @@ def _varied(dataset: xr.Dataset) -> list[str]:
 
 
 def _triangles(x: Array, y: Array | None, accepted: NDArray[np.bool_]) -> NDArray[np.int_]:
-    """Delaunay triangles between all cases, without those that touch one that has no gait."""
+    """Delaunay triangles between all cases, without those that touch one that has no gait.
+
+    L and T to speed and cadence is a projective map: triangles stay triangles.
+    """
     from scipy.spatial import Delaunay, QhullError
 
     nothing = np.zeros((0, 3), dtype=int)
     if y is None or len(x) < 3:
         return nothing
     try:
-        found = Delaunay(np.stack([_scaled(x), _scaled(y)], axis=1)).simplices
+        found = Delaunay(np.stack([x / np.ptp(x), y / np.ptp(y)], axis=1)).simplices
     except QhullError:  # all on one line
         return nothing
     kept: NDArray[np.int_] = found[accepted[found].all(axis=1)]
     return kept
-
-
-def _scaled(values: Array) -> Array:
-    """Numbers by rank among the different ones, so that cells of a grid are squares."""
-    different = np.unique(values)
-    places: Array = np.interp(values, different, np.arange(float(len(different))))
-    return places
 
 
 def _valley(length: Array, time: Array, energy: Array, triangles: NDArray[np.int_]) -> Array:

@@ -15,10 +15,7 @@ STEP, LONGEST_STEP = 0.03, 0.08
 """First and longest step of the search for a bracket, as parts of the step length."""
 
 CLOSE_M = 0.002
-"""Bracket of the step length at which the search is done [m]."""
-
-FLAT = 2e-4
-"""What may be left to gain at the end, as a part of the objective."""
+"""The search is done this close to the minimum [m]: a bracket as narrow, or slopes that say so."""
 
 MOST_GAITS = 15
 
@@ -87,8 +84,7 @@ class Preferred:
     bracket : (float, float)
         Step lengths [m] between which the minimum lies.
     found : bool
-        Whether the search ended at a minimum: in a bracket as narrow as asked for, or where less
-        than :data:`FLAT` is left to gain.
+        Whether the search ended at a minimum, to within :data:`CLOSE_M`.
     status : str
         One sentence on how the search ended.
     trials : tuple of Trial
@@ -252,8 +248,8 @@ class _Search:
         refused = 0
         while high.step_length - low.step_length > CLOSE_M:
             best = min(low, high, key=lambda t: abs(t.slope))
-            if self._left(best, low, high) < FLAT * abs(best.value):
-                words = f"less than {FLAT:g} of the cost is left to gain"
+            if self._away(best, low, high) < CLOSE_M:
+                words = f"the slopes place it within {CLOSE_M:g} m"
                 return self._answer(True, words, best, (low, high))
             if len(self.trials) + self.refused >= MOST_GAITS or refused > HALVINGS:
                 return self._answer(False, "too many gaits", best, (low, high))
@@ -266,13 +262,16 @@ class _Search:
             else:
                 low, refused = trial, 0
         best = min(low, high, key=lambda t: abs(t.slope))
-        return self._answer(True, f"between step lengths {CLOSE_M:g} m apart", best, (low, high))
+        return self._answer(
+            True, f"between two gaits less than {CLOSE_M:g} m apart", best, (low, high)
+        )
 
     @staticmethod
-    def _left(best: Trial, low: Trial, high: Trial) -> float:
-        """What is left to gain from the best end, its slope falling evenly to the other end."""
-        way, change = high.step_length - low.step_length, high.slope - low.slope
-        return 0.5 * best.slope**2 * way / change if change > 0 else math.inf
+    def _away(best: Trial, low: Trial, high: Trial) -> float:
+        """How far the minimum is from the better end if the slope changes evenly in between."""
+        change = high.slope - low.slope
+        way = high.step_length - low.step_length
+        return abs(best.slope) * way / change if change > 0 else math.inf
 
     def _answer(
         self,

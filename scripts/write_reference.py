@@ -30,6 +30,12 @@ API = {
     "AuditReport": "ergowalk.audit.AuditReport",
     "compare": "ergowalk.comparison.compare",
     "write_figures": "ergowalk.plots.write_figures",
+    "Sweep": "ergowalk.study.Sweep",
+    "Tally": "ergowalk.study.Tally",
+    "collect": "ergowalk.study.collect",
+    "Preferred": "ergowalk.study.Preferred",
+    "Criterion": "ergowalk.study.Criterion",
+    "steps_of_people": "ergowalk.study.steps_of_people",
     "problem_to_toml": "ergowalk.problem.files.problem_to_toml",
     "casadi_functions": "ergowalk.mechanics.symbolic.casadi_functions",
 }

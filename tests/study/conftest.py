@@ -12,15 +12,14 @@ from ergowalk.problem import preset
 from ergowalk.study import Sweep, sweep
 from ergowalk.study.store import EFFORT, INDEX
 
-distributed = pytest.importorskip("distributed", reason="dask is not installed")
-parquet = pytest.importorskip("pyarrow.parquet", reason="pyarrow is not installed")
-
 STANDINS = f"{__name__.rpartition('.')[0]}.standins"
 
 
 @pytest.fixture(scope="session")
 def here() -> Iterator[str]:
     """Address of a cluster of two threads in this process; its nurseries are processes."""
+    distributed = pytest.importorskip("distributed", reason="dask is not installed")
+    pytest.importorskip("pyarrow", reason="pyarrow is not installed")
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, processes=False, dashboard_address="127.0.0.1:0"
     ) as cluster:
@@ -36,6 +35,8 @@ def small(name: str = "small", problem: str = "quick", **changes: Any) -> Sweep:
 
 def index(folder: Path) -> dict[str, dict[str, Any]]:
     """The rows of an index by key, without what the same sweep run again may change."""
+    from pyarrow import parquet
+
     rows = parquet.read_table(folder / INDEX).to_pylist()
     return {row["key"]: {k: v for k, v in row.items() if k not in EFFORT} for row in rows}
 

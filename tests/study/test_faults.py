@@ -23,6 +23,8 @@ from ergowalk.study.store import Store
 
 from .conftest import SOLVER, begun, index, run, small
 
+pytest.importorskip("distributed", reason="dask is not installed")
+
 ENVIRONMENT = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
 
 PATIENCE_S = 120.0

@@ -17,6 +17,8 @@ from ergowalk.study.store import Store
 from . import standins
 from .conftest import begun, index, run, small
 
+pytest.importorskip("distributed", reason="dask is not installed")
+
 
 def test_every_case_of_a_grid_is_solved_measured_and_stored(here: str, tmp_path: Path) -> None:
     told: list[Tally] = []

@@ -30,7 +30,7 @@ def cluster_client(workers: int | None, scheduler: str | None, most: int) -> Ite
         If Dask is not installed, the number of workers is no number of workers, or there is no
         scheduler.
     """
-    distributed = _distributed()
+    distributed = needed()
     if scheduler is not None:
         with _connected(distributed, scheduler) as client:
             yield client
@@ -120,12 +120,10 @@ def greeted(client: Any, folder: Path, mark: str) -> None:
 
 
 def slots(client: Any) -> int:
-    """Threads of the cluster: cases that can run at once."""
-    try:
-        workers = client.scheduler_info(n_workers=-1)["workers"]
-    except (TypeError, KeyError, OSError):
-        return 0
-    return sum(worker["nthreads"] for worker in workers.values())
+    """Threads of the cluster: cases that can run at once; 0 of a cluster that is lost."""
+    with suppress(Exception):
+        return sum(client.nthreads().values())
+    return 0
 
 
 def dashboard(client: Any) -> str:
@@ -135,7 +133,14 @@ def dashboard(client: Any) -> str:
     return ""
 
 
-def _distributed() -> Any:
+def needed() -> Any:
+    """Dask's distributed scheduler, with all that a sweep needs beside it.
+
+    Raises
+    ------
+    SweepError
+        If that is not installed.
+    """
     try:
         import distributed
         import pyarrow  # noqa: F401 - for the index

@@ -123,7 +123,7 @@ def preferred(
     speed: float,
     *,
     start: Solution | None = None,
-    criterion: Criterion = ENERGY,
+    criterion: Criterion | None = None,
     solver: Solve | None = None,
     progress: Report | None = None,
 ) -> Preferred:
@@ -142,8 +142,8 @@ def preferred(
         m/s.
     start : Solution, optional
         A gait to begin with, of any speed.
-    criterion : Criterion
-        What is minimised; by default E. The gaits must minimise the same.
+    criterion : Criterion, optional
+        What is minimised; by default :data:`ENERGY`. The gaits must minimise the same.
     solver : callable, optional
         Finds a gait of a problem from a start; :func:`ergowalk.solve` by default.
     progress : callable, optional
@@ -163,7 +163,8 @@ def preferred(
     """
     if not 0 < speed < math.inf:
         raise SweepError("must be positive", "give a speed in m/s", field="speed", value=speed)
-    return _Search(problem, speed, criterion, solver or _solver(progress)).run(start)
+    search = _Search(problem, speed, criterion or ENERGY, solver or _solver(progress))
+    return search.run(start)
 
 
 def _solver(progress: Report | None) -> Solve:

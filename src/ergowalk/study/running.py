@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import heapq
+import math
 import queue
 import time
 from collections import Counter
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from ergowalk.errors import InputError, SweepError
 from ergowalk.study.cases import DEFAULT_SOLVER, Case, cases_of
-from ergowalk.study.cluster import cluster_client, dashboard, greeted, slots
+from ergowalk.study.cluster import cluster_client, dashboard, greeted, needed, slots
 from ergowalk.study.definition import Sweep
 from ergowalk.study.plan import Step, planned
 from ergowalk.study.store import Record, Store
@@ -128,6 +129,7 @@ def sweep(
     """
     from ergowalk.study.results import collect
 
+    needed()
     if workers is not None and scheduler is not None:
         raise SweepError("have their own workers", "leave out one", field="workers and scheduler")
     cases = cases_of(definition, solver)
@@ -163,7 +165,8 @@ class _Run:
         self.definition, self.store, self.retried = definition, store, retried
         self.solver, self.progress = solver, progress
         self.steps = {step.case.key: step for step in steps}
-        self.place = {key: i for i, key in enumerate(self.steps)}
+        self.keys = list(self.steps)
+        self.place = {key: i for i, key in enumerate(self.keys)}
         known = store.done(self.steps)
         self.done = {k: r["status"] for k, r in known.items() if r["status"] not in retried}
         self.missing = [key for key in self.steps if key not in self.done]
@@ -174,6 +177,7 @@ class _Run:
         self.flying: dict[Any, str] = {}
         self.landed: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self.fresh, self.last = 0, ""
+        self.threads, self.counted = 0, -math.inf
         self.began = self.indexed = time.monotonic()
         for key in self.missing:
             neighbour = self.steps[key].neighbour
@@ -200,9 +204,10 @@ class _Run:
 
     def _launch(self, client: Any) -> None:
         """Send cases whose neighbours are done, two for each thread: none of them should wait."""
-        keys = list(self.steps)
-        while self.ready and len(self.flying) < 2 * max(slots(client), 1):
-            key = keys[heapq.heappop(self.ready)]
+        if time.monotonic() - self.counted > TICK_S:
+            self.counted, self.threads = time.monotonic(), slots(client)
+        while self.ready and len(self.flying) < 2 * max(self.threads, 1):
+            key = self.keys[heapq.heappop(self.ready)]
             future = client.submit(run_case, self._ticket(key), pure=False, key=_task_name(key))
             self.flying[future] = key
             future.add_done_callback(self.landed.put)
@@ -295,10 +300,10 @@ class _Run:
                 done=len(self.done),
                 accepted=status["accepted"],
                 failed=sum(n for s, n in status.items() if s not in FINISHED),
-                running=min(len(self.flying), slots(client)),
+                running=min(len(self.flying), self.threads),
                 fresh=self.fresh,
                 elapsed=time.monotonic() - self.began,
-                workers=slots(client),
+                workers=self.threads,
                 dashboard=dashboard(client),
                 last=self.last,
             )

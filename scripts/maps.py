@@ -1,9 +1,9 @@
 """The map of the documentation: ``python scripts/maps.py FOLDER [NAME]``.
 
 FOLDER is that of the sweep ``scripts/sweeps/NAME.toml`` (natural by default), as
-``ergowalk sweep scripts/sweeps/natural.toml -o FOLDER`` leaves it. Draws ``docs/assets/map.png`` and
-fills the blocks ``<!-- study: map ... -->`` of the pages with the valley and with what became of
-the cases.
+``ergowalk sweep scripts/sweeps/natural.toml -o FOLDER`` leaves it. Draws
+``docs/assets/map-NAME.png`` and fills the blocks ``<!-- study: map NAME, valley -->`` and
+``<!-- study: map NAME, cases -->`` of the pages.
 """
 
 from __future__ import annotations

@@ -33,14 +33,17 @@ def test_readme_has_two_commands_that_set_everything_up() -> None:
 
 
 def test_lowest_versions_are_the_lower_bounds() -> None:
-    bounds = dict(bound.split(">=") for bound in PROJECT["project"]["dependencies"])
+    extras = PROJECT["project"]["optional-dependencies"]
+    given = [*PROJECT["project"]["dependencies"], *extras["sweep"]]
+    bounds = dict(bound.split(">=") for bound in given)
     lowest = pins("requirements-lowest.txt")
     assert {name.lower(): version for name, version in bounds.items()}.items() <= lowest.items()
 
 
 def test_the_test_environment_pins_what_the_tests_need() -> None:
     needed = [bound.split(">=")[0].lower() for bound in PROJECT["project"]["dependencies"]]
-    needed += PROJECT["project"]["optional-dependencies"]["test"]
+    extras = PROJECT["project"]["optional-dependencies"]
+    needed += [*extras["test"], *(bound.split(">=")[0] for bound in extras["sweep"])]
     assert set(needed) <= set(pins("requirements-test.txt"))
 
 

@@ -78,9 +78,8 @@ function ergowalkMap(root, map, gaits, frame) {
   }
 
   function isolines(place) {
-    for (let tenth = 2; tenth <= 40; tenth += 2) {
-      const v = tenth / 10; // L = v T / 2
-      const points = [];
+    for (const v of ticks(Math.min(...map.speed), Math.max(...map.speed))) {
+      const points = []; // L = v T / 2
       for (let i = 0; i <= 100; i++) {
         const t = place.x0 + (i / 100) * (place.x1 - place.x0), l = (v * t) / 2;
         if (l > place.y0 && l < place.y1) points.push([t, l]);

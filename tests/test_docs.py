@@ -19,6 +19,8 @@ from ergowalk.audit.report import Residual
 from ergowalk.cli.parser import build_parser
 from ergowalk.problem import PRESETS
 from ergowalk.problem.files import problem_from_toml
+from ergowalk.study import read_sweep
+from ergowalk.study.cases import cases_of
 
 ROOT = Path(__file__).parents[1]
 PAGES = [*pages(), ROOT / "CONTRIBUTING.md"]
@@ -79,9 +81,13 @@ def test_code_that_would_take_minutes_is_at_least_python(page: Path) -> None:
 
 
 @pytest.mark.parametrize("page", with_any("toml"), ids=named)
-def test_problem_files_on_the_pages_are_problem_files(page: Path) -> None:
+def test_problem_and_sweep_files_on_the_pages_are_such_files(page: Path, tmp_path: Path) -> None:
     for text in fences(page, "toml"):
-        assert problem_from_toml(text, file=str(page)).step_length_m > 0
+        if re.search(r"^\[+(grid|cases|random)\b", text, re.M):
+            (tmp_path / "sweep.toml").write_text(text)
+            assert cases_of(read_sweep(tmp_path / "sweep.toml"))
+        else:
+            assert problem_from_toml(text, file=str(page)).step_length_m > 0
 
 
 def shown_commands(page: Path) -> list[str]:

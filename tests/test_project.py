@@ -42,7 +42,8 @@ def test_lowest_versions_are_the_lower_bounds() -> None:
 
 def test_the_test_environment_pins_what_the_tests_need() -> None:
     needed = [bound.split(">=")[0].lower() for bound in PROJECT["project"]["dependencies"]]
-    needed += PROJECT["project"]["optional-dependencies"]["test"]
+    extras = PROJECT["project"]["optional-dependencies"]
+    needed += [*extras["test"], *(bound.split(">=")[0] for bound in extras["sweep"])]
     assert set(needed) <= set(pins("requirements-test.txt"))
 
 

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from ergowalk.problem.files import read_problem
     from ergowalk.solution import Solution
     from ergowalk.solving import follow, solve
+    from ergowalk.study import preferred, read_sweep, sweep
 
 _HOMES = {
     "Body": "ergowalk.body",
@@ -30,9 +31,12 @@ _HOMES = {
     "Solution": "ergowalk.solution",
     "follow": "ergowalk.solving",
     "human_gait": "ergowalk.corridors",
+    "preferred": "ergowalk.study",
     "preset": "ergowalk.problem",
     "read_problem": "ergowalk.problem.files",
+    "read_sweep": "ergowalk.study",
     "solve": "ergowalk.solving",
+    "sweep": "ergowalk.study",
 }
 """Public names and where they live; loaded on first use, so that importing is quick."""
 
@@ -43,9 +47,12 @@ __all__ = [
     "Solution",
     "follow",
     "human_gait",
+    "preferred",
     "preset",
     "read_problem",
+    "read_sweep",
     "solve",
+    "sweep",
 ]
 
 

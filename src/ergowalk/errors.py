@@ -87,6 +87,10 @@ class OutputError(InputError):
     """A place that cannot be written."""
 
 
+class SweepError(InputError):
+    """A sweep that cannot be run, or whose results cannot be used."""
+
+
 def _short(value: object, limit: int = 60) -> str:
     text = repr(value)
     return text if len(text) <= limit else text[: limit - 1] + "…"

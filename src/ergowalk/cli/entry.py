@@ -104,6 +104,19 @@ def _figures(arguments: Namespace) -> int:
     return ACCEPTABLE
 
 
+def _sweep(arguments: Namespace) -> int:
+    from ergowalk.cli.sweep import run_sweep
+
+    return ACCEPTABLE if run_sweep(arguments) else NOT_ACCEPTABLE
+
+
+def _map(arguments: Namespace) -> int:
+    from ergowalk.cli.map import run_map
+
+    run_map(arguments)
+    return ACCEPTABLE
+
+
 def _presets(arguments: Namespace) -> int:
     from ergowalk.cli.problems import run_presets
 
@@ -135,6 +148,8 @@ COMMANDS: dict[str, Callable[[Namespace], int]] = {
     "export": _export,
     "animate": _animate,
     "figures": _figures,
+    "sweep": _sweep,
+    "map": _map,
     "presets": _presets,
     "init": _init,
     "app": _app,

@@ -64,6 +64,8 @@ def build_parser() -> Parser:
     _add_export(commands)
     _add_animate(commands)
     _add_figures(commands)
+    _add_sweep(commands)
+    _add_map(commands)
     _add_presets(commands)
     _add_init(commands)
     _add_app(commands)
@@ -414,6 +416,73 @@ def _add_export(commands: Any) -> None:
         metavar="N",
         help="strides in .mot, .sto and .trc, each a stride length further on (default: 1)",
     )
+    _add_json(parser)
+
+
+def _add_sweep(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "sweep",
+        "solve many problems on a cluster",
+        "A grid, a list or random values of any fields of a problem. Each case begins at the gait "
+        "of its neighbour; every result stays on disk as it comes, and the same command again "
+        "solves what is missing. The answer is acceptable if a gait is.",
+    )
+    parser.add_argument("sweep", type=_path, metavar="SWEEP.toml", help="a sweep file")
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=_path,
+        metavar="DIR",
+        help="folder of the results, of this sweep and of others (default: ergowalk-NAME)",
+    )
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument(
+        "--workers",
+        type=int,
+        metavar="N",
+        help="processes on this machine; the results do not depend on it (default: one for each "
+        "processor)",
+    )
+    where.add_argument(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="Dask scheduler of a cluster that exists, as tcp://host:8786; its workers must see "
+        "DIR under the same name",
+    )
+    parser.add_argument(
+        "--retry",
+        action="store_true",
+        help="solve those again that failed, ran out of time or memory, or crashed",
+    )
+    _add_json(parser)
+    parser.add_argument("--quiet", action="store_true", help="no progress on standard error")
+
+
+def _add_map(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "map",
+        "draw the map of a sweep",
+        "E over step length and stride time with lines of constant speed, and over speed and "
+        "cadence with its valley beside the steps of people; of other fields a curve or a map. "
+        "Writes map.png, map.svg and map.html, in which a click shows a gait in motion.",
+    )
+    parser.add_argument("folder", type=_path, metavar="DIR", help="the folder of a sweep")
+    parser.add_argument(
+        "--sweep", metavar="NAME", help="which sweep, if DIR has several (default: the latest)"
+    )
+    parser.add_argument(
+        "--at",
+        action="append",
+        default=[],
+        metavar="FIELD=VALUE",
+        help="show the part of the sweep with this value; may be repeated",
+    )
+    parser.add_argument(
+        "-o", "--output", type=_path, metavar="OUT", help="folder of the map (default: DIR)"
+    )
+    parser.add_argument("--no-page", action="store_true", help="write no map.html")
     _add_json(parser)
 
 

@@ -81,6 +81,13 @@ class ProgressLine:
             self._finish()
             note(" ".join(text.split()))
 
+    def refresh(self, text: str) -> bool:
+        """Show a line that the next one replaces, where there is a terminal; whether there is."""
+        if self._terminal:
+            self._last = text[: shutil.get_terminal_size().columns - 1]
+            self._show(self._last)
+        return self._terminal
+
     def __enter__(self) -> Self:
         return self
 

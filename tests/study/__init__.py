@@ -1,0 +1,1 @@
+"""Sweeps: cases, plan, store, running, faults."""

@@ -1,0 +1,178 @@
+"""A sweep ends with every case recorded, does nothing twice, and does not depend on who works."""
+
+from __future__ import annotations
+
+import threading
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from ergowalk.errors import OutputError, SweepError
+from ergowalk.solution import Solution
+from ergowalk.study import Sweep, Tally, collect, sweep
+from ergowalk.study.store import Store
+
+from . import standins
+from .conftest import begun, index, run, small
+
+pytest.importorskip("distributed", reason="dask is not installed")
+
+
+def test_every_case_of_a_grid_is_solved_measured_and_stored(here: str, tmp_path: Path) -> None:
+    told: list[Tally] = []
+    found = run(small(), tmp_path / "out", here, progress=told.append)
+    assert found["energy_per_metre"].dims == ("step_length_m", "stride_time_s")
+    for length in (0.6, 0.7, 0.8):
+        for time in (1.0, 1.2):
+            case = found.sel(step_length_m=length, stride_time_s=time)
+            energy = standins.energy(length, time)
+            assert case["energy_per_metre"] == pytest.approx(energy)
+            # E as the sum of what the joints do, from the stored powers
+            assert case["energy_by_joint"].sum() == pytest.approx(energy, rel=1e-6)
+            assert case["speed_m_s"] == pytest.approx(2 * length / time)
+            assert case["peak_reaction"].sel(axis="y") == pytest.approx(1.1)
+            assert case["rhythm"].sel(instant="toe_off") == pytest.approx(0.62, abs=0.05)
+            gait = Solution(_dataset(tmp_path / "out", str(case["key"].item())))
+            assert gait.problem.step_length_m == length
+    assert bool((found["status"] == "accepted").all())
+    last = told[-1]
+    assert (last.total, last.done, last.accepted, last.failed, last.running) == (6, 6, 6, 0, 0)
+    assert last.left_s == 0
+    assert last.per_minute > 0
+
+
+def _dataset(folder: Path, key: str) -> Any:
+    import xarray as xr
+
+    with xr.open_dataset(Store(folder).gait(key)) as stored:
+        return stored.load()
+
+
+def test_each_case_begins_at_the_neighbour_that_the_plan_names(here: str, tmp_path: Path) -> None:
+    found = run(small(), tmp_path / "out", here)
+    keys = {str(k) for k in found["key"].to_numpy().ravel()}
+    begun_at = [str(k) for k in found["begun_at"].to_numpy().ravel()]
+    assert begun_at.count("") == 1  # the case next to the base problem
+    assert set(begun_at) - {""} <= keys
+    # made-up gaits are no starts: they lack curves, so the solver begins as if there were none
+    assert {str(w) for w in found["way"].to_numpy().ravel()} == {"human means"}
+
+
+def test_the_same_sweep_again_does_only_what_is_missing(here: str, tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    first = run(small(), folder, here)
+    before = index(folder)
+    assert len(begun(folder)) == 6
+    keys = [str(key) for key in first["key"].to_numpy().ravel()]
+    Store(folder).record_path(keys[3]).unlink()
+    Store(folder).record_path(keys[0]).write_text("{half a rec")
+    Store(folder).gait(keys[4]).unlink()
+    run(small(), folder, here)
+    assert sorted(begun(folder)[6:]) == sorted([keys[0], keys[3], keys[4]])
+    assert index(folder) == before
+
+
+def test_what_fails_is_recorded_with_its_reason_and_the_rest_goes_on(
+    here: str, tmp_path: Path
+) -> None:
+    lengths = [*standins.TROUBLES, 0.56, 0.57, 3.0]
+    limits = {"time_limit_s": 4.0, "memory_limit_mb": 1000.0}
+    definition = small("bad", "troubled", grid={"step_length_m": lengths}, solve=limits)
+    folder = tmp_path / "out"
+    found = run(definition, folder, here)
+    status = dict(zip(lengths, found["status"].to_numpy().tolist(), strict=True))
+    reason = dict(zip(lengths, found["reason"].to_numpy().tolist(), strict=True))
+    assert status == {
+        0.51: "out of time",
+        0.52: "out of memory",
+        0.53: "crashed",
+        0.54: "error",
+        0.55: "rejected",
+        0.56: "accepted",
+        0.57: "accepted",
+        3.0: "refused",
+    }
+    assert reason[0.51] == "killed after its limit of 4 s"
+    assert reason[0.52] == "needed more than its limit of 1000 MB"
+    assert reason[0.53] == "ended with SIGSEGV"
+    assert reason[0.54] == "ZeroDivisionError: division by zero"
+    assert "out of reach: these legs span at most" in reason[3.0]
+    assert np.isnan(found["energy_per_metre"].sel(step_length_m=0.51))
+    # those beyond a case without a gait begin at the last gait on the way to it
+    key = {length: str(found["key"].sel(step_length_m=length).item()) for length in lengths}
+    assert str(found["begun_at"].sel(step_length_m=0.51).item()) == key[0.56]
+
+    before, count = index(folder), len(begun(folder))
+    assert set(before) == set(key.values())
+    run(definition, folder, here)
+    assert len(begun(folder)) == count
+    run(definition, folder, here, retry=True)
+    assert set(begun(folder)[count:]) == {key[length] for length in (0.51, 0.52, 0.53, 0.54)}
+    assert index(folder) == before
+
+
+def test_two_sweeps_in_one_folder_share_their_cases(here: str, tmp_path: Path) -> None:
+    folder, failed = tmp_path / "out", []
+    wider = small("wider", grid={"step_length_m": [0.7, 0.8, 0.9], "stride_time_s": [1.0, 1.2]})
+
+    def work(definition: Sweep) -> None:
+        try:
+            run(definition, folder, here)
+        except BaseException as error:
+            failed.append(error)
+
+    threads = [threading.Thread(target=work, args=(d,)) for d in (small(), wider, small())]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(60)
+    assert failed == []
+    assert len(index(folder)) == 8
+    for name in ("small", "wider"):
+        assert bool((collect(folder, name)["acceptable"] == 1).all())
+    shared = collect(folder, "small")["key"].sel(step_length_m=0.8).to_numpy()
+    assert (shared == collect(folder, "wider")["key"].sel(step_length_m=0.8).to_numpy()).all()
+    assert not [p for p in folder.rglob(".*") if p.name != ".lock"]
+
+
+def test_a_folder_of_something_else_is_left_alone(here: str, tmp_path: Path) -> None:
+    (tmp_path / "thesis.txt").write_text("mine")
+    with pytest.raises(OutputError, match="is not empty and not the folder of a sweep; choose"):
+        run(small(), tmp_path, here)
+    assert [p.name for p in tmp_path.iterdir()] == ["thesis.txt"]
+
+
+def test_a_scheduler_that_is_not_there_is_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("ergowalk.study.cluster.CONNECT_S", 0.5)
+    with pytest.raises(SweepError, match="scheduler = 'tcp://127.0.0.1:9': there is no scheduler"):
+        sweep(small(), tmp_path / "out", scheduler="tcp://127.0.0.1:9")
+    with pytest.raises(SweepError, match="scheduler = 'nonsense': there is no scheduler"):
+        sweep(small(), tmp_path / "out", scheduler="nonsense")
+
+
+def test_workers_and_scheduler_exclude_each_other(tmp_path: Path) -> None:
+    with pytest.raises(SweepError, match="workers and scheduler: have their own workers"):
+        sweep(small(), tmp_path / "out", workers=2, scheduler="tcp://127.0.0.1:9")
+    with pytest.raises(SweepError, match="workers = 0: must be 1 or more"):
+        sweep(small(), tmp_path / "out", workers=0)
+
+
+def test_a_solver_that_cannot_be_loaded_is_one_line(here: str, tmp_path: Path) -> None:
+    with pytest.raises(SweepError, match="solver = 'nowhere:walk': cannot be loaded by worker .*"):
+        sweep(small(), tmp_path / "out", scheduler=here, solver="nowhere:walk")
+
+
+def test_without_dask_one_sentence_says_what_to_install(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import sys
+
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(
+        SweepError, match="a sweep needs distributed; pip install 'ergowalk.sweep.'"
+    ):
+        sweep(small(), tmp_path / "out")

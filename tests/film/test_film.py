@@ -193,8 +193,17 @@ def test_films_too_long_for_anyone_are_refused() -> None:
 
 
 def test_a_walker_that_does_not_walk_is_refused(gaits: Any) -> None:
-    with pytest.raises(InputError, match="goes 0 m in a stride"):
+    with pytest.raises(InputError, match="goes 0 m far or high; must be 0.01 to 100 m"):
         film([{**gaits[0], "stride_length": 0.0}], options("gif"))
+    with pytest.raises(InputError, match=r"stands 1e\+300 m far or high"):
+        film([{**gaits[0], "trunk_top": [[0.0, 1e300]] * 301}], options("gif"))
+
+
+@pytest.mark.parametrize("force", [1e3, 1e9, 1e300])
+def test_absurd_forces_do_not_stop_a_film(gaits: Any, force: float) -> None:
+    legs = [{**leg, "reaction": [[force, -force]] * 301} for leg in gaits[0]["legs"]]
+    absurd = [{**leg, "power": [[force] * 4] * 301} for leg in legs]
+    assert Scene([{**gaits[0], "legs": absurd}], options("webp")).draw(0.1).max() == 255
 
 
 def test_without_pyav_an_mp4_says_what_to_install(gaits: Any, monkeypatch: Any) -> None:

@@ -22,8 +22,8 @@ _LINE = ("hip", "knee", "ankle", "heel", "metatarsal", "ankle", "metatarsal", "t
 _JOINT_POINTS = ("hip", "knee", "ankle", "metatarsal")
 
 
-SHORTEST = 0.01
-"""Shortest stride [m] that can be filmed: the ground has marks in parts of a stride."""
+SHORTEST, LARGEST = 0.01, 100.0
+"""Strides and heights of shoulders [m] that fit into a picture with marks on the ground."""
 
 
 class Walker:
@@ -51,16 +51,14 @@ class Walker:
         ]
         self._top = _rows(payload["trunk_top"])
         self.length = float(payload["stride_length"])
-        if self.length < SHORTEST:
-            raise InputError(
-                f"goes {self.length:g} m in a stride; must go at least {SHORTEST:g} m forward",
-                "give a gait that walks",
-                field=str(payload["label"]),
-            )
+        self.top = float(self._top[:, 1].max())
+        for what, size in (("goes", self.length), ("stands", self.top)):
+            if not SHORTEST <= size <= LARGEST:
+                rule = f"{what} {size:g} m far or high; must be {SHORTEST:g} to {LARGEST:g} m"
+                raise InputError(rule, "give a gait that walks", field=str(payload["label"]))
         hip = self._rows[0]["hip"][:, 0]
         way = np.linspace(0.0, self.length, len(hip))
         self.ahead = float(np.mean((hip - way)[:-1]))
-        self.top = float(self._top[:, 1].max())
         powers = np.abs([r["power"] for r in self._rows])
         self.strongest = float(np.nan_to_num(powers).max())
 

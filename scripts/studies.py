@@ -11,7 +11,7 @@ from functools import cache
 
 import ergowalk
 from blocks import table, write_studies
-from ergowalk.problem import GaitProblem, JointBounds
+from ergowalk.problem import GaitProblem, JointBounds, Objective
 
 PRINTED = ergowalk.preset("berbyuk2002-rhythm")
 
@@ -67,6 +67,22 @@ def landing() -> str:
     return table(("metatarsal moment when the other heel lands", "E [J/m] on elements"), rows)
 
 
+def objectives() -> str:
+    """E and the value of other objectives where they are least."""
+    table_of = {
+        "E (10)": Objective(),
+        "muscle work": Objective(absolute_work=0.0, muscle_work=1.0),
+        "squared moments": Objective(absolute_work=0.0, moment_squared_s_per_m2=1.0),
+        "E and squared rates": Objective(moment_rate_squared_s3_per_m2=0.0005),
+    }
+    rows = []
+    for name, objective in table_of.items():
+        found = solution(PRINTED.replace(objective=objective))
+        value = f"{found.objective_per_metre:.1f}"
+        rows.append((name, objective.sentence(), value, _energies(found)[0], _verdict(found)))
+    return table(("least", "objective", "its value [J/m]", "E [J/m]", "acceptable"), rows)
+
+
 def foot_length() -> str:
     """E against |HM|, which the paper does not give."""
     rows = []
@@ -97,6 +113,7 @@ STUDIES = {
     "moment rate": moment_rate,
     "landing": landing,
     "foot length": foot_length,
+    "objectives": objectives,
 }
 
 

@@ -136,6 +136,10 @@ def mesh_line(record: Record) -> AuditLine:
         f"{check['energy_per_metre']:.4g} J/m with {check['elements']}"
     )
     change = abs(check["energy_per_metre"] - energy) / energy
+    values = [as_number(e.get("objective_per_metre")) for e in (reported, check)]
+    if "objective_per_metre" in reported:  # another objective must stand still too
+        change = max(change, abs(values[1] - values[0]) / abs(values[0]))
+        note += f"; objective {values[0]:.4g} and {values[1]:.4g} J/m"
     return residuals.MESH.judged(Worst(change, ""), note)
 
 

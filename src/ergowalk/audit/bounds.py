@@ -81,7 +81,7 @@ def _moment_line(
     return line.judged(Worst(over.value / record.walker.weight, over.where))
 
 
-def _physical_moment(record: Record, joint: int) -> Array:
+def physical_moment(record: Record, joint: int) -> Array:
     """A joint moment (n, 2) where it is one.
 
     Up to heel-off the toes move with the foot: the stored metatarsal moment only balances the
@@ -94,7 +94,7 @@ def _physical_moment(record: Record, joint: int) -> Array:
 
 
 def _moment_excess(record: Record, joint: int, bound: float) -> Worst:
-    excess = np.abs(_physical_moment(record, joint)) - bound
+    excess = np.abs(physical_moment(record, joint)) - bound
     return worst(excess[..., None], record.time, LEGS, (JOINTS[joint],))
 
 
@@ -104,7 +104,7 @@ def _rate_excess(record: Record, joint: int, bound: float) -> Worst:
     Two strides in a row hold every pair; for each t2 the worst t1 is a running extreme of
     m -+ bound t, so no derivative is taken and a jump counts in full.
     """
-    moment = np.tile(_physical_moment(record, joint), (2, 1))
+    moment = np.tile(physical_moment(record, joint), (2, 1))
     time = np.concatenate([record.time, record.time + record.stride_time])
     ramp = bound * time[:, None]
     rise = (moment - ramp) - np.minimum.accumulate(moment - ramp)

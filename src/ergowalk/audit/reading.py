@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from ergowalk.audit.record import JOINTS, PHASES, RHYTHM, SEGMENTS, UNKNOWN_PHASE, Record
+from ergowalk.audit.record import JOINTS, PHASES, RHYTHM, SEGMENTS, UNKNOWN_PHASE, Record, as_number
 from ergowalk.audit.walker import Array, Walker
 from ergowalk.errors import GaitFileError
 
@@ -93,6 +93,8 @@ def _read(dataset: xr.Dataset) -> Record:
         step_length=_positive(dataset, "step_length"),
         stride_time=_positive(dataset, "stride_time"),
         energy_per_metre=_number(dataset, "energy_per_metre"),
+        stated=frozenset(map(str, dataset.attrs)),
+        objective_per_metre=as_number(dataset.attrs.get("objective_per_metre")),
         rhythm=_rhythm(dataset),
         problem=_problem(dataset),
         mesh_history=_mesh_history(dataset),

@@ -72,7 +72,8 @@ class Result:
             "status": solution.status,
             "energy_per_metre": float(solution.energy_per_metre),
             "energy_error": solution.energy_error,
-            "limits": problem.limits.sentence(),
+            "limits": problem.conditions(),
+            "objective_per_metre": solution.objective_per_metre,
             "cost_of_transport": solution.cost_of_transport,
             "energy_share": energy_shares(solution),
             "rhythm": solution.rhythm.as_dict(),
@@ -107,6 +108,7 @@ class Result:
                 f"{problem.stride_time_s:g} s, {speed:.3g} m/s",
             ),
             ("E", f"{joules} with {found['limits']}"),
+            *self._objective_row(),
             ("cost of transport", f"{found['cost_of_transport']:.4f} (E / M g)"),
             ("energy share", ", ".join(shares)),
             ("rhythm", _rhythm_text(found["rhythm"], found["rhythm_fixed"])),
@@ -125,6 +127,14 @@ class Result:
             ("status", f"{'acceptable' if self.accepted else 'NOT ACCEPTABLE'}: {found['status']}"),
             ("files", f"{self.folder}: {summarised(found['files'])}"),
         ]
+
+    def _objective_row(self) -> Rows:
+        """The value of what was minimised, where that is not E."""
+        objective = self.solution.problem.objective
+        if objective.is_eq10:
+            return []
+        value = self.solution.objective_per_metre
+        return [("objective", f"{value:.2f} J/m = {objective.sentence()}")]
 
     def beside_paper(self) -> BesidePaper | None:
         """The gait beside what the paper prints, if it was found by the paper's method."""

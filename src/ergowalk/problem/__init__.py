@@ -9,6 +9,7 @@ from ergowalk.problem.gait_problem import (
     Limits,
     RhythmBounds,
 )
+from ergowalk.problem.objective import Objective
 from ergowalk.problem.presets import DEFAULT_PRESET, PRESETS, preset
 
 __all__ = [
@@ -20,6 +21,7 @@ __all__ = [
     "GaitProblem",
     "JointBounds",
     "Limits",
+    "Objective",
     "RhythmBounds",
     "preset",
 ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import StrEnum
 from pathlib import Path
-from typing import Literal, Self
+from typing import Any, Literal, Self
 
 from pydantic import Field, field_validator, model_validator
 
@@ -12,6 +12,7 @@ from ergowalk.body import Body
 from ergowalk.corridors import ANGLES, Corridor, HumanGait, human_gait
 from ergowalk.errors import CorridorError, ProblemError
 from ergowalk.gait.rhythm import PRINTED_RHYTHM, PhaseOrder, Rhythm
+from ergowalk.problem.objective import Objective
 from ergowalk.values import FiniteFloat, PositiveFloat, Value, invalid
 
 Off = Literal["off"]
@@ -179,18 +180,11 @@ class Limits(Value):
     moment_nm_per_kg: JointBounds = Field(
         default=JointBounds(), description="bounds on the joint moments, N m/kg: strength"
     )
-    moment_rate_cost_s3_per_m2: Bound = Field(
-        default="off",
-        description="weight of the stride integral of squared moment rates per kg, times "
-        "M/(2L), added to E; a smooth alternative to the bound",
-    )
 
     @property
     def bounds_moment_rate(self) -> bool:
-        """Whether hip, knee and ankle have a bound or a cost that makes the problem well posed."""
-        return self.moment_rate_cost_s3_per_m2 != "off" or all(
-            self.moment_rate_nm_per_kg_s.of(joint) is not None for joint in ANGLES
-        )
+        """Whether hip, knee and ankle have a bound that makes the problem well posed."""
+        return all(self.moment_rate_nm_per_kg_s.of(joint) is not None for joint in ANGLES)
 
     def sentence(self) -> str:
         """The limits in words, to stand beside every E."""
@@ -201,8 +195,6 @@ class Limits(Value):
             parts.append(f"|R_x| <= {self.friction_coefficient:g} R_y")
         parts += _joint_sentence("moment rate", self.moment_rate_nm_per_kg_s, "N m/(kg s)")
         parts += _joint_sentence("moment", self.moment_nm_per_kg, "N m/kg")
-        if self.moment_rate_cost_s3_per_m2 != "off":
-            parts.append(f"moment-rate cost {self.moment_rate_cost_s3_per_m2:g} s3/m2")
         return ", ".join(parts) or "no limits"
 
 
@@ -254,9 +246,23 @@ class GaitProblem(Value):
     corridors: Corridors = Field(default=Corridors(), description="human corridors (6)")
     rhythm: RhythmBounds = Field(default=RhythmBounds(), description="contact instants (3)")
     limits: Limits = Field(default=Limits(), description="physical limits")
+    objective: Objective = Field(
+        default=Objective(), description="what is minimised: a weighted sum, (10) alone by default"
+    )
     folder: Path | None = Field(
         default=None, exclude=True, description="where relative file names start"
     )
+
+    @property
+    def well_posed(self) -> bool:
+        """Whether a bound or a cost keeps the moments from growing to spikes."""
+        return self.limits.bounds_moment_rate or self.objective.charges_moments
+
+    def conditions(self) -> str:
+        """What every E is stated with, in words: the limits, and what was minimised if not E."""
+        if self.objective.is_eq10:
+            return self.limits.sentence()
+        return f"{self.limits.sentence()}; minimised: {self.objective.sentence()}"
 
     def human(self) -> HumanGait:
         """The human data that the corridors come from."""
@@ -266,6 +272,20 @@ class GaitProblem(Value):
         """Corridors of hip, knee and ankle angle in radians (6)."""
         human, width = self.human(), self.corridors.width_sd
         return {joint: human.angle_corridor(joint, width) for joint in ANGLES}
+
+    @model_validator(mode="before")
+    @classmethod
+    def _older_files(cls, data: Any) -> Any:
+        """The cost of moment rates once stood among the limits."""
+        limits = data.get("limits") if isinstance(data, dict) else None
+        if not isinstance(limits, dict) or "moment_rate_cost_s3_per_m2" not in limits:
+            return data
+        objective = data.get("objective", {})
+        weight = limits["moment_rate_cost_s3_per_m2"]
+        if weight != "off" and isinstance(objective, dict):
+            objective = {"moment_rate_squared_s3_per_m2": weight, **objective}
+        rest = {k: v for k, v in limits.items() if k != "moment_rate_cost_s3_per_m2"}
+        return {**data, "limits": rest, "objective": objective}
 
     @field_validator("body")
     @classmethod

@@ -54,6 +54,11 @@ class Solution:
         return float(self.dataset.attrs["energy_per_metre"])
 
     @property
+    def objective_per_metre(self) -> float:
+        """What was minimised [J/m], as stored: E itself unless the problem says otherwise."""
+        return float(self.dataset.attrs.get("objective_per_metre", self.energy_per_metre))
+
+    @property
     def cost_of_transport(self) -> float:
         """E / (M g): energy per weight and distance."""
         body = self.problem.body

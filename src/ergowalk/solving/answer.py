@@ -15,6 +15,7 @@ from ergowalk.problem import GaitProblem
 from ergowalk.problem.files import problem_to_toml
 from ergowalk.solution import Solution
 from ergowalk.solution.energy import joint_energies
+from ergowalk.solution.objective import objective_per_metre
 from ergowalk.solution.stride import Piece, stride_dataset
 from ergowalk.transcription.curves import Trajectory, joined
 from ergowalk.transcription.motion import body_motion, load_sharing
@@ -52,6 +53,16 @@ def dense_energy(dataset: xr.Dataset, step_length: float) -> float:
     return sum(joint_energies(dataset).values()) / (2 * step_length)
 
 
+def minimised(dataset: xr.Dataset, problem: GaitProblem) -> float:
+    """The objective [J/m] from the dense curves; E of (10) to the last digit where it is that."""
+    if problem.objective.is_eq10:
+        return dense_energy(dataset, problem.step_length_m)
+    try:
+        return objective_per_metre(dataset, problem)
+    except ValueError:  # a motion out of reach has no such integral
+        return float("nan")
+
+
 def rhythm_of(trajectory: Trajectory, stride: float) -> Rhythm:
     """Contact instants as fractions of T."""
     times = trajectory.times
@@ -79,6 +90,7 @@ def describe(
         {
             "title": f"energy-optimal gait, problem {problem.name}",
             "energy_per_metre": dense_energy(dataset, problem.step_length_m),
+            "objective_per_metre": minimised(dataset, problem),
             "step_length": problem.step_length_m,
             "stride_time": problem.stride_time_s,
             "method": method,
@@ -87,7 +99,7 @@ def describe(
             "rhythm": json.dumps(rhythm.as_dict()),
             "body_parameters": json.dumps(problem.body.by_symbol()),
             "problem": problem_to_toml(problem),
-            "limits": problem.limits.sentence(),
+            "limits": problem.conditions(),
             "mesh_history": json.dumps(history),
             "ergowalk_version": __version__,
             **extra,

@@ -12,7 +12,14 @@ from ergowalk.problem import GaitProblem
 from ergowalk.problem.objective import energy_per_metre
 from ergowalk.solution import Solution
 from ergowalk.solution.progress import Report
-from ergowalk.solving.answer import dense_energy, dense_gait, describe, judged, rhythm_of
+from ergowalk.solving.answer import (
+    dense_energy,
+    dense_gait,
+    describe,
+    judged,
+    minimised,
+    rhythm_of,
+)
 from ergowalk.solving.memory import recall, remember
 from ergowalk.solving.stages import (
     COARSE,
@@ -52,7 +59,7 @@ def solve_collocation(
 ) -> Solution:
     """The cheapest gait of all phase orders that the problem allows; see :func:`~.verb.solve`."""
     effort, store = Effort(), KernelStore()
-    weights = smoothing or (Smoothing() if problem.limits.bounds_moment_rate else FAINT)
+    weights = smoothing or (Smoothing() if problem.well_posed else FAINT)
     searches = [
         OrderSearch(problem, order, weights, effort, progress, store)
         for order in problem.rhythm.orders()
@@ -60,7 +67,7 @@ def solve_collocation(
     begun = None if start is None else _begin(searches, start)
     candidates = [begun] if begun else [_searched(s, perturbation) for s in searches]
     best = min(candidates, key=lambda c: (not c.result.minimum.converged, c.result.energy_at_nodes))
-    if not problem.limits.bounds_moment_rate:
+    if not problem.well_posed:
         gait = _show_impulses(best)
     else:
         if begun is None and best.result.minimum.converged:
@@ -153,6 +160,8 @@ def _dense(
     dataset = dense_gait(search.walker, search.order, result.trajectory)
     energy = dense_energy(dataset, search.problem.step_length_m)
     history.append(_record(result, energy, **flags))
+    if not search.problem.objective.is_eq10:
+        history[-1]["objective_per_metre"] = minimised(dataset, search.problem)
     return dataset, energy
 
 
@@ -183,8 +192,9 @@ def _refine(coarse: Candidate) -> Gait:
         check = Candidate(search, search.refined(final.result, mesh, 1.0))
         checked, confirmed = _dense(check, history)
         change = confirmed / reported - 1
+        moved = _moved(history[-2], history[-1])
         converged = check.result.minimum.converged
-        if not converged or abs(change) <= MESH_TOLERANCE:
+        if not converged or moved <= MESH_TOLERANCE:
             break
         if check.result.elements > MOST_ELEMENTS:
             break
@@ -197,13 +207,24 @@ def _refine(coarse: Candidate) -> Gait:
             f"{check.result.elements} did not: {check.result.minimum.message}"
         )
         return Gait(final, dataset, history, status, settled=False)
-    settled = abs(change) <= MESH_TOLERANCE
+    settled = moved <= MESH_TOLERANCE
     status = (
         f"{'converged' if settled else 'not converged with the mesh'}: "
         f"E = {reported:.2f} J/m on {final.result.elements} elements, "
         f"{100 * change:+.2f} % on {check.result.elements}"
     )
+    if not search.problem.objective.is_eq10:
+        value = history[-2]["objective_per_metre"]
+        change = history[-1]["objective_per_metre"] / value - 1
+        status += f"; objective {value:.2f} J/m, {100 * change:+.2f} %"
     return Gait(final, dataset, history, status, settled)
+
+
+def _moved(reported: dict[str, Any], check: dict[str, Any]) -> float:
+    """By how much E, and the objective where it is another, differ on two meshes."""
+    names = ("energy_per_metre", "objective_per_metre")
+    pairs = [(float(check[n]), float(reported[n])) for n in names if n in reported]
+    return max(abs(new / old - 1) for new, old in pairs)
 
 
 def _show_impulses(coarse: Candidate) -> Gait:

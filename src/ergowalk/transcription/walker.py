@@ -36,7 +36,7 @@ from ergowalk.mechanics.kinematics import (
 )
 from ergowalk.problem import JOINTS, DoubleSupport, GaitProblem
 from ergowalk.problem import constraints as c
-from ergowalk.problem.objective import eq10_joint_powers
+from ergowalk.problem.objective import Objective, eq10_joint_powers, squared_moments
 from ergowalk.transcription.edges import BAND, corridor_edges
 from ergowalk.transcription.phases import (
     Coordinate,
@@ -65,12 +65,17 @@ class Smoothing:
     metatarsal_rate: float = 1e-4
     swing_foot: float = 1e-6
 
+    def scaled(self, factor: float) -> Smoothing:
+        """The same beside an objective that charges work ``factor`` times as dearly as E."""
+        return Smoothing(*(factor * weight for weight in vars(self).values()))
+
 
 class Walker:
     """What all phases of a gait problem share, and the functions of an instant."""
 
     def __init__(self, problem: GaitProblem, smoothing: Smoothing) -> None:
         self.problem, self.smoothing = problem, smoothing
+        self.small = smoothing.scaled(_work_price(problem.objective))
         self.leg: LegParameters = problem.body.leg(0)
         self.mass, self.gravity = problem.body.total_mass, problem.body.gravity_m_s2
         self.coefficients: Coefficients = coefficients(problem.body)
@@ -275,12 +280,17 @@ class Walker:
             terms.equal("foot (1)", balance)
         if phase.legs[1] is Contact.TOE:
             self._toe_phase_rows(terms, instant, points[1], moments[1], reactions[1])
+        objective = self.problem.objective
         for contact, leg, moment in zip(phase.legs, motion.legs, moments, strict=True):
             powers = eq10_joint_powers(moment, motion.trunk, leg)
-            terms.absolute += powers[: _WORKING_JOINTS[contact]]
+            if objective.charges_work:
+                terms.absolute += powers[: _WORKING_JOINTS[contact]]
+        if objective.moment_squared_s_per_m2:
+            squares = squared_moments(instant.controls.values())
+            terms.integrand = objective.moment_squared_s_per_m2 * squares
         if "foot_2" in instant.coordinates:
             acceleration = instant.coordinates["foot_2"].acceleration
-            terms.integrand = self.smoothing.swing_foot * acceleration**2
+            terms.integrand = terms.integrand + self.small.swing_foot * acceleration**2
         return terms
 
     def _toe_phase_rows(
@@ -343,6 +353,11 @@ _WORKING_JOINTS = {
 
 SHARING = ("pressure_shift", "reaction_share")
 """The two lines of (12): from the toe tip to the centre of pressure [m], and R_2x per kg."""
+
+
+def _work_price(objective: Objective) -> float:
+    """What a joule gained and lost again costs, over what it costs in E; 1 if work is free."""
+    return sum(objective.of_work) / 2 if objective.charges_work else 1.0
 
 
 def _rotation(state: State) -> Rotation:

@@ -58,6 +58,7 @@ def walking_problem(
             at_ends,
             path_everywhere=phase.legs[1] is Contact.TOE,
             curves=walker.corridor_curves,
+            absolute_weights=problem.objective.of_work,
         )
 
     return _chain(walker, order, model, with_loads=True)
@@ -128,10 +129,9 @@ def _chain(
     at_toe_off = next(p.legs[0] for p in phases if p.end == "other_toe_off")
     limits = problem.limits
     rates = {f"{j}_{i}": limits.moment_rate_nm_per_kg_s.of(j) for j in JOINTS for i in (1, 2)}
-    weight = limits.moment_rate_cost_s3_per_m2
-    smoothing, price = walker.smoothing, 0.0 if weight == "off" else weight
-    cost = dict.fromkeys(JOINTS, price + smoothing.moment_rate)
-    cost["metatarsal"] = price + smoothing.metatarsal_rate
+    small, price = walker.small, problem.objective.moment_rate_squared_s3_per_m2
+    cost = dict.fromkeys(JOINTS, price + small.moment_rate)
+    cost["metatarsal"] = price + small.metatarsal_rate
     shortest = c.SHORTEST_PHASE * problem.stride_time_s
     return PhasedProblem(
         phases=models,

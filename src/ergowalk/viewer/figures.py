@@ -58,7 +58,7 @@ def headline(solution: Solution, acceptable: bool) -> Rows:
     verdict = "acceptable" if acceptable else "NOT ACCEPTABLE"
     return [
         ("E", f"{energy:.2f}{bar} J/m"),
-        ("with the limits", problem.limits.sentence()),
+        ("with the limits", problem.conditions()),
         ("cost of transport", f"{solution.cost_of_transport:.4f} (E / M g)"),
         (
             "walk",

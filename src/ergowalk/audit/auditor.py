@@ -9,6 +9,7 @@ import xarray as xr
 
 from ergowalk.audit.asked import attribute_line, corridor_lines, finite_line, mesh_line
 from ergowalk.audit.bounds import bound_lines, pressure_line
+from ergowalk.audit.devices import device_lines
 from ergowalk.audit.loads import balance_lines, energy_lines
 from ergowalk.audit.motion import curve_lines, foot_lines, symmetry_lines
 from ergowalk.audit.objective import objective_line
@@ -50,6 +51,7 @@ def audit(dataset: xr.Dataset, folder: Path | None = None) -> AuditReport:
             *symmetry_lines(record),
             *energy_lines(record),
             objective_line(record),
+            *device_lines(record),
             mesh_line(record),
             *grid_lines(record),
             phase_line(record),

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ergowalk.audit import residuals
+from ergowalk.audit.devices import own_moments
 from ergowalk.audit.record import FLAT, FOREFOOT, HEEL, JOINTS, SWING, TOE, Record, as_number
 from ergowalk.audit.report import LEGS, AuditLine, Residual, Worst, largest, worst
 from ergowalk.audit.walker import Array
@@ -82,12 +83,12 @@ def _moment_line(
 
 
 def physical_moment(record: Record, joint: int) -> Array:
-    """A joint moment (n, 2) where it is one.
+    """The walker's own moment (n, 2) at a joint, where it is one.
 
     Up to heel-off the toes move with the foot: the stored metatarsal moment only balances the
     last line of (1) there, and what a muscle must give is zero.
     """
-    moment = record.raw["joint_moment"][..., joint]
+    moment = own_moments(record)[..., joint]
     if JOINTS[joint] != "metatarsal":
         return moment
     return np.where(np.isin(record.phase, (HEEL, FLAT)), 0.0, moment)

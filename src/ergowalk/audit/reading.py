@@ -43,6 +43,9 @@ VARIABLES: dict[str, tuple[str, ...]] = {
 }
 """Variables of a gait file and their dimensions."""
 
+OPTIONAL = {"device_moment": ("time", "leg", "joint")}
+"""Variables of a gait with devices."""
+
 MAY_BE_MISSING = ("center_of_pressure", "corridor_lower", "corridor_upper")
 """Variables with NaN where they have no meaning."""
 
@@ -85,6 +88,9 @@ def read_record(dataset: xr.Dataset, file: str | None = None) -> Record:
 def _read(dataset: xr.Dataset) -> Record:
     time = _time(dataset)
     raw = {name: _variable(dataset, name, dims) for name, dims in VARIABLES.items()}
+    for name, dims in OPTIONAL.items():
+        if name in dataset.variables:
+            raw[name] = _variable(dataset, name, dims)
     return Record(
         time=time,
         raw=raw,

@@ -1,5 +1,6 @@
 """Problem A: givens, constraints (2)-(9), objective (10), physical limits, presets."""
 
+from ergowalk.problem.devices import Device, Devices
 from ergowalk.problem.gait_problem import (
     JOINTS,
     Corridors,
@@ -17,6 +18,8 @@ __all__ = [
     "JOINTS",
     "PRESETS",
     "Corridors",
+    "Device",
+    "Devices",
     "DoubleSupport",
     "GaitProblem",
     "JointBounds",

@@ -12,11 +12,13 @@ from ergowalk.body import Body
 from ergowalk.corridors import ANGLES, Corridor, HumanGait, human_gait
 from ergowalk.errors import CorridorError, ProblemError
 from ergowalk.gait.rhythm import PRINTED_RHYTHM, PhaseOrder, Rhythm
+from ergowalk.problem.devices import Device, Devices
 from ergowalk.problem.objective import Objective
 from ergowalk.values import FiniteFloat, PositiveFloat, Value, invalid
 
 Off = Literal["off"]
 Bound = PositiveFloat | Off
+Width = PositiveFloat | Literal["same"] | Off
 Instant = FiniteFloat | tuple[FiniteFloat, FiniteFloat]
 
 JOINTS = ("hip", "knee", "ankle", "metatarsal")
@@ -219,6 +221,18 @@ class Corridors(Value):
     width_sd: PositiveFloat = Field(
         default=1.0, description="half width of the corridors in standard deviations"
     )
+    hip_width_sd: Width = Field(
+        default="same", description="half width at the hip, 'same', or 'off' (no corridor)"
+    )
+    knee_width_sd: Width = Field(default="same", description="half width at the knee")
+    ankle_width_sd: Width = Field(default="same", description="half width at the ankle")
+
+    def width(self, joint: str) -> float | None:
+        """Half width at a joint in standard deviations, None where there is no corridor."""
+        value = getattr(self, f"{joint}_width_sd")
+        if value == "off":
+            return None
+        return self.width_sd if value == "same" else float(value)
 
 
 class GaitProblem(Value):
@@ -249,6 +263,7 @@ class GaitProblem(Value):
     objective: Objective = Field(
         default=Objective(), description="what is minimised: a weighted sum, (10) alone by default"
     )
+    devices: Devices = Field(default=Devices(), description="passive devices at the joints")
     folder: Path | None = Field(
         default=None, exclude=True, description="where relative file names start"
     )
@@ -260,18 +275,32 @@ class GaitProblem(Value):
 
     def conditions(self) -> str:
         """What every E is stated with, in words: the limits, and what was minimised if not E."""
-        if self.objective.is_eq10:
-            return self.limits.sentence()
-        return f"{self.limits.sentence()}; minimised: {self.objective.sentence()}"
+        parts = [self.limits.sentence()]
+        if not self.objective.is_eq10:
+            parts.append(f"minimised: {self.objective.sentence()}")
+        if self.devices.sentence():
+            parts.append(f"devices: {self.devices.sentence()}")
+        return "; ".join(parts)
+
+    def devices_of(self, leg: int) -> tuple[tuple[str, Device], ...]:
+        """(joint, device) of every device of a leg (0 is leg 1 of the paper)."""
+        return tuple(self.devices.items())
 
     def human(self) -> HumanGait:
         """The human data that the corridors come from."""
         return human_gait(self.corridors.source, self.folder)
 
     def angle_corridors(self) -> dict[str, Corridor]:
-        """Corridors of hip, knee and ankle angle in radians (6)."""
-        human, width = self.human(), self.corridors.width_sd
-        return {joint: human.angle_corridor(joint, width) for joint in ANGLES}
+        """Corridors of hip, knee and ankle angle in radians (6).
+
+        One that is off is there too, :meth:`Corridors.width` says so: its middle is where a search
+        begins.
+        """
+        human, asked = self.human(), self.corridors
+        return {
+            joint: human.angle_corridor(joint, asked.width(joint) or asked.width_sd)
+            for joint in ANGLES
+        }
 
     @model_validator(mode="before")
     @classmethod

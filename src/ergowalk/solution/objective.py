@@ -10,7 +10,7 @@ from scipy.interpolate import CubicSpline
 from ergowalk.gait.rhythm import Contact
 from ergowalk.problem import GaitProblem
 from ergowalk.problem.objective import WEIGHTS, Objective
-from ergowalk.quantities import JOINTS
+from ergowalk.quantities import DEVICE_MOMENT, JOINTS
 from ergowalk.solution.energy import absolute_integrals, smooth_pieces
 
 Array = NDArray[np.float64]
@@ -46,6 +46,8 @@ def own_moments(dataset: xr.Dataset) -> Array:
     with the sole, and what a muscle must give is zero.
     """
     moment = dataset["joint_moment"].transpose("time", "leg", "joint").to_numpy().copy()
+    if DEVICE_MOMENT in dataset:
+        moment -= dataset[DEVICE_MOMENT].transpose("time", "leg", "joint").to_numpy()
     phase = dataset["contact_phase"].transpose("time", "leg").to_numpy()
     standing = np.isin(phase, (Contact.HEEL, Contact.FLAT))
     moment[..., JOINTS.index("metatarsal")][standing] = 0.0

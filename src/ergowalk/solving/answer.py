@@ -18,7 +18,7 @@ from ergowalk.solution.energy import joint_energies
 from ergowalk.solution.objective import objective_per_metre
 from ergowalk.solution.stride import Piece, stride_dataset
 from ergowalk.transcription.curves import Trajectory, joined
-from ergowalk.transcription.motion import body_motion, load_sharing
+from ergowalk.transcription.motion import body_motion, device_moments, load_sharing
 from ergowalk.transcription.walker import Walker
 
 SAMPLES = 9
@@ -44,7 +44,8 @@ def dense_gait(walker: Walker, order: PhaseOrder, trajectory: Trajectory) -> xr.
         dense = joined(samples)
         motion = body_motion(walker, phase, dense)
         sharing = load_sharing(walker, phase, dense, motion)
-        pieces.append(Piece(np.concatenate(time), phase.legs, motion, sharing))
+        devices = device_moments(walker, phase, dense, motion)
+        pieces.append(Piece(np.concatenate(time), phase.legs, motion, sharing, devices))
     return stride_dataset(walker.problem, pieces)
 
 

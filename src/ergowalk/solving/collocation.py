@@ -277,8 +277,23 @@ def _sharpness(dataset: xr.Dataset, search: OrderSearch) -> dict[str, float]:
 
 def _failed(candidate: Candidate, history: list[dict[str, Any]], where: str) -> Gait:
     dataset, _ = _dense(candidate, history, final=True)
-    status = f"not converged {where}: {candidate.result.minimum.message}"
+    status = f"not converged {where}: {candidate.result.minimum.message}{_conflict(candidate)}"
     return Gait(candidate, dataset, history, status, settled=False)
+
+
+CONFLICT, MOST_NAMED = 1e-4, 4
+"""Violation (scaled) from which a constraint is in conflict, and how many of them are named."""
+
+
+def _conflict(candidate: Candidate) -> str:
+    """Which constraints no motion near the last one could satisfy together, worst first."""
+    result = candidate.result
+    violations = result.collocation.programme.violations(result.minimum.x)
+    worst = sorted((v, name) for name, v in violations.items() if v > CONFLICT)[::-1]
+    if not worst or result.minimum.violation <= CONFLICT:
+        return ""
+    named = ", ".join(name for _, name in worst[:MOST_NAMED])
+    return f"; in conflict: {named}" + (" and others" if len(worst) > MOST_NAMED else "")
 
 
 def _finished(

@@ -139,8 +139,9 @@ def given_numbers(problem: GaitProblem) -> Iterator[tuple[str, float]]:
     for name in ("step_length_m", "stride_time_s"):
         yield name, getattr(problem, name)
     yield "corridors.width_sd", problem.corridors.width_sd
-    tables = ("limits", "body") if problem.objective.is_eq10 else ("limits", "body", "objective")
-    for table in tables:
+    tables = ["limits", "body"]
+    tables += [] if problem.objective.is_eq10 else ["objective"]
+    for table in (*tables, "devices"):
         yield from _numbers(getattr(problem, table), table)
 
 

@@ -122,6 +122,13 @@ def _check_objective(problem: GaitProblem, method: str) -> None:
             field="objective",
             value=problem.objective.sentence(),
         )
+    if method != "collocation" and any(problem.devices.items()):
+        raise ProblemError(
+            f"method {method!r} knows no devices",
+            "leave out the table, or use method 'collocation'",
+            field="devices",
+            value=problem.devices.sentence(),
+        )
 
 
 def _check_starts(method: str, start: Solution | None) -> None:

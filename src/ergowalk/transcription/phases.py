@@ -151,11 +151,12 @@ class PhaseModel:
 
 @dataclass(frozen=True)
 class Link:
-    """Constraints on the coordinates and rates at one phase boundary."""
+    """Constraints on the coordinates and rates at one phase boundary, and on named controls."""
 
     name: str
     boundary: str
     function: InstantFunction
+    controls: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

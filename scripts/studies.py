@@ -12,7 +12,7 @@ from functools import cache
 import ergowalk
 from blocks import table, write_studies
 from ergowalk.anthropometry import Person
-from ergowalk.problem import GaitProblem, JointBounds
+from ergowalk.problem import GaitProblem, JointBounds, Objective
 from ergowalk.problem.scaling import for_person
 
 PRINTED = ergowalk.preset("berbyuk2002-rhythm")
@@ -67,6 +67,22 @@ def landing() -> str:
     }
     rows = [(name, _on_meshes(solution(problem))) for name, problem in cases.items()]
     return table(("metatarsal moment when the other heel lands", "E [J/m] on elements"), rows)
+
+
+def objectives() -> str:
+    """E and the value of other objectives where they are least."""
+    table_of = {
+        "E (10)": Objective(),
+        "muscle work": Objective(absolute_work=0.0, muscle_work=1.0),
+        "squared moments": Objective(absolute_work=0.0, moment_squared_s_per_m2=1.0),
+        "E and squared rates": Objective(moment_rate_squared_s3_per_m2=0.0005),
+    }
+    rows = []
+    for name, objective in table_of.items():
+        found = solution(PRINTED.replace(objective=objective))
+        value = f"{found.objective_per_metre:.1f}"
+        rows.append((name, objective.sentence(), value, _energies(found)[0], _verdict(found)))
+    return table(("least", "objective", "its value [J/m]", "E [J/m]", "acceptable"), rows)
 
 
 def foot_length() -> str:
@@ -125,6 +141,7 @@ STUDIES = {
     "landing": landing,
     "foot length": foot_length,
     "bodies": bodies,
+    "objectives": objectives,
 }
 
 

@@ -90,3 +90,19 @@ QUANTITIES = {
     )
 }
 """Every variable of a gait file by name; the contract that other tools rely on."""
+
+DEVICE_MOMENT = "device_moment"
+
+OF_DEVICES = {
+    DEVICE_MOMENT: Quantity(
+        DEVICE_MOMENT,
+        "-",
+        "N m",
+        _TLJ,
+        "part of the joint moment that a device bears; the rest is the walker's own",
+    )
+}
+"""Variables of a gait with devices alone."""
+
+ALL_QUANTITIES = QUANTITIES | OF_DEVICES
+"""Both."""

@@ -18,6 +18,7 @@ from ergowalk.errors import InputError
 
 FiniteFloat = Annotated[float, Field(allow_inf_nan=False, strict=True)]
 PositiveFloat = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
+NonNegativeFloat = Annotated[float, Field(ge=0, allow_inf_nan=False, strict=True)]
 
 INPUT_ONLY: dict[str, Any] = {"writeOnly": True}
 """``json_schema_extra`` of a field that a file may give and that other fields take over."""

@@ -96,7 +96,7 @@ def joint_power_with_its_sign_flipped(gait: xr.Dataset) -> None:
     gait["joint_power"].values[:, :, ANKLE] *= -1
 
 
-@lie("energy", "joint_power")
+@lie("energy", "joint_power", "objective")
 def joint_powers_scaled_by_one_percent(gait: xr.Dataset) -> None:
     gait["joint_power"].values[:] *= 1.01
 

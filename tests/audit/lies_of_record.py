@@ -52,6 +52,17 @@ def another_rhythm(gait: xr.Dataset) -> None:
     edit_json(gait, "rhythm", heel_off=heel_off + 1e-4)
 
 
+@lie("objective")
+def an_objective_of_a_percent_less(gait: xr.Dataset) -> None:
+    gait.attrs["objective_per_metre"] = 0.99 * gait.attrs["energy_per_metre"]
+
+
+@lie("objective")
+def another_objective_than_the_problems(gait: xr.Dataset) -> None:
+    gait.attrs["objective_per_metre"] = gait.attrs["energy_per_metre"]
+    set_problem(gait, "objective", "muscle_work", "0.5")
+
+
 @lie("rhythm_order", "phases", "rhythm_as_asked")
 def a_rhythm_against_the_inequality(gait: xr.Dataset) -> None:
     edit_json(gait, "rhythm", heel_end=0.46, heel_off=0.45)

@@ -22,6 +22,7 @@ from ergowalk.problem import (
     GaitProblem,
     JointBounds,
     Limits,
+    Objective,
     RhythmBounds,
     preset,
 )
@@ -89,7 +90,13 @@ problems = st.builds(
         friction_coefficient=bound,
         moment_rate_nm_per_kg_s=joint_bounds,
         moment_nm_per_kg=joint_bounds,
-        moment_rate_cost_s3_per_m2=bound,
+    ),
+    objective=st.builds(
+        Objective,
+        positive_work=st.floats(0, 1e6),
+        muscle_work=st.floats(0, 1e6),
+        regenerated_share=st.floats(0, 1, exclude_max=True),
+        moment_rate_squared_s3_per_m2=st.floats(0, 1e6),
     ),
 )
 
@@ -127,6 +134,7 @@ def test_the_file_has_the_agreed_keys_and_tables_in_order():
         "limits",
         "limits.moment_rate_nm_per_kg_s",
         "limits.moment_nm_per_kg",
+        "objective",
     ]
     assert tomllib.loads(text)["step_length_m"] == 0.76
     assert tomllib.loads(text)["stride_time_s"] == 1.14

@@ -11,7 +11,14 @@ from hypothesis import strategies as st
 from ergowalk.body import Body
 from ergowalk.errors import CorridorError, InputError, ProblemError
 from ergowalk.gait.rhythm import PRINTED_RHYTHM, PhaseOrder, Rhythm, boundary_fractions
-from ergowalk.problem import Corridors, GaitProblem, JointBounds, Limits, RhythmBounds
+from ergowalk.problem import (
+    Corridors,
+    GaitProblem,
+    JointBounds,
+    Limits,
+    Objective,
+    RhythmBounds,
+)
 
 fractions = st.floats(0.001, 0.499)
 pairs = st.tuples(fractions, fractions).map(lambda pair: tuple(sorted(pair)))
@@ -131,7 +138,6 @@ def test_limits_stand_in_one_sentence():
         moment_rate_nm_per_kg_s=JointBounds(),
     )
     assert off.sentence() == "no limits"
-    assert "moment-rate cost 0.01 s3/m2" in off.replace(moment_rate_cost_s3_per_m2=0.01).sentence()
     strong = off.replace(moment_nm_per_kg=JointBounds(hip=2.0, ankle=2.5))
     assert strong.sentence() == "moment <= 2 N m/kg at hip, moment <= 2.5 N m/kg at ankle"
 
@@ -140,8 +146,9 @@ def test_only_a_bound_or_a_cost_on_all_moment_rates_makes_the_problem_well_posed
     assert Limits().bounds_moment_rate
     some = Limits(moment_rate_nm_per_kg_s=JointBounds(hip=25.0, knee=25.0))
     assert not some.bounds_moment_rate
-    assert some.replace(moment_rate_cost_s3_per_m2=0.01).bounds_moment_rate
     assert not some.replace(moment_nm_per_kg=JointBounds(ankle=2.0)).bounds_moment_rate
+    assert not problem(limits=some).well_posed
+    assert problem(limits=some, objective=Objective(moment_rate_squared_s3_per_m2=0.01)).well_posed
 
 
 def test_a_step_beyond_the_legs_is_refused():

@@ -10,9 +10,12 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
 
+from ergowalk.errors import ProblemError
 from ergowalk.mechanics.dynamics import LegMoments
 from ergowalk.mechanics.kinematics import LegMotion, Rotation
-from ergowalk.problem.objective import energy_per_metre, eq10_joint_powers
+from ergowalk.problem import Objective
+from ergowalk.problem.files import problem_from_toml
+from ergowalk.problem.objective import energy_per_metre, eq10_joint_powers, squared_moments
 from ergowalk.solution.energy import joint_energies
 
 Array = NDArray[np.float64]
@@ -50,6 +53,53 @@ def test_a_moment_along_the_motion_of_the_distal_segment_does_positive_work(join
 def test_turning_as_one_body_costs_nothing(values: Array, rate: float) -> None:
     turning = np.concatenate([values[:4], values[4:] + rate])
     np.testing.assert_allclose(powers(turning), powers(values), atol=1e-10)
+
+
+def test_eq10_alone_is_the_default() -> None:
+    assert Objective().is_eq10
+    assert Objective().of_work == (1.0, 1.0)
+    assert Objective().sentence() == "E"
+    assert not Objective(positive_work=0.1).is_eq10
+    assert not Objective(moment_squared_s_per_m2=0.1).is_eq10
+
+
+def test_a_joule_costs_what_its_terms_say() -> None:
+    muscles = Objective(absolute_work=0.0, muscle_work=1.0)
+    assert muscles.of_work == pytest.approx((1 / 0.25, 1 / 1.2))
+    assert Objective(absolute_work=0.0, positive_work=2.0).of_work == (2.0, 0.0)
+    back = Objective(absolute_work=0.0, regenerative_work=1.0, regenerated_share=0.3)
+    assert back.of_work == pytest.approx((1.0, -0.3))
+    both = Objective(absolute_work=0.5, positive_work=1.0, muscle_work=0.25, regenerative_work=2.0)
+    assert both.of_work == pytest.approx((0.5 + 1.0 + 1.0 + 2.0, 0.5 + 0.25 / 1.2 - 1.0))
+
+
+def test_moments_alone_charge_no_work() -> None:
+    squares = Objective(absolute_work=0.0, moment_squared_s_per_m2=0.1)
+    assert not squares.charges_work
+    assert squares.charges_moments
+    assert squares.sentence() == "0.1 s/m2 x squared moments"
+    assert squared_moments([3.0, -4.0]) == 25.0
+
+
+def test_an_objective_without_a_weight_is_refused() -> None:
+    with pytest.raises(ProblemError, match=r"absolute_work = 0\.0: all weights .* zero; give"):
+        Objective(absolute_work=0.0)
+
+
+@pytest.mark.parametrize("share", [1.0, -0.1, 2.0])
+def test_not_all_negative_work_can_be_won_back(share: float) -> None:
+    """With all of it, the objective of a periodic walk would be zero whatever it does."""
+    with pytest.raises(ProblemError, match=r"regenerated_share = .*: should be"):
+        Objective(regenerative_work=1.0, regenerated_share=share)
+
+
+def test_the_cost_of_moment_rates_may_stand_where_it_once_stood() -> None:
+    given = "step_length_m = 0.7\nstride_time_s = 1.1\n[limits]\nmoment_rate_cost_s3_per_m2 = "
+    assert problem_from_toml(given + '"off"').objective.is_eq10
+    moved = problem_from_toml(given + "0.001").objective
+    assert moved == Objective(moment_rate_squared_s3_per_m2=0.001)
+    with pytest.raises(ProblemError, match=r"objective\.moment_rate_squared_s3_per_m2 = -1"):
+        problem_from_toml(given + "-1")
 
 
 def test_e_of_the_half_stride_is_e_of_the_stride() -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ergowalk.audit import residuals
-from ergowalk.audit.reading import MAY_BE_MISSING, VARIABLES
+from ergowalk.audit.reading import MAY_BE_MISSING
 from ergowalk.audit.record import JOINTS, Record, as_number
 from ergowalk.audit.report import LEGS, AuditLine, Worst, worst
 from ergowalk.audit.walker import Array
@@ -31,7 +31,7 @@ BODY_FIELDS = {
 def finite_line(record: Record) -> AuditLine:
     """No NaN or infinity where a number must stand."""
     found = Worst(0.0, "")
-    for name in VARIABLES:
+    for name in record.raw:
         if name in MAY_BE_MISSING:
             continue
         bad = ~np.isfinite(record.raw[name])
@@ -66,20 +66,36 @@ def _asked_corridor_line(record: Record, folder: Path | None) -> AuditLine:
         human = human_gait(source, folder)
     except CorridorError as error:
         return line.cannot_be_judged(str(error))
-    difference = _corridor_difference(record, human, width)
+    widths = [_width(asked.get(f"{joint}_width_sd", "same"), width) for joint in CORRIDOR_JOINTS]
+    if np.any(np.isnan(widths)):
+        return line.cannot_be_judged("the stored problem states a width that is no number")
+    difference = _corridor_difference(record, human, widths)
     found = worst(difference, record.time, LEGS, CORRIDOR_JOINTS, one_sided=False)
     return line.judged(found)
 
 
-def _corridor_difference(record: Record, human: HumanGait, width: float) -> Array:
-    """Largest difference of either bound [deg] (n, 2, 3); NaN where a bound is missing."""
+def _width(stated: object, common: float) -> float:
+    """Half width of one corridor: infinite where it is off, NaN where it is not stated."""
+    if stated == "same":
+        return common
+    return np.inf if stated == "off" else as_number(stated)
+
+
+def _corridor_difference(record: Record, human: HumanGait, widths: list[float]) -> Array:
+    """Largest difference of either bound [deg] (n, 2, 3); NaN where a bound is missing.
+
+    Where no corridor is asked for, a bound that is there differs by infinity.
+    """
     fraction = record.time[:, None] / record.stride_time - np.array([0.0, 0.5])
     difference = np.zeros((*fraction.shape, len(CORRIDOR_JOINTS)))
     for j, joint in enumerate(CORRIDOR_JOINTS):
         mean, sd = (curve(fraction) for curve in human.curves[f"{joint}_angle"])
         for name, sign in (("corridor_lower", -1), ("corridor_upper", 1)):
             stored = np.degrees(record.raw[name][..., j])
-            error = np.abs(stored - (mean + sign * width * sd))
+            if np.isinf(widths[j]):
+                difference[..., j] = np.where(np.isnan(stored), 0.0, np.inf)
+                continue
+            error = np.abs(stored - (mean + sign * widths[j] * sd))
             difference[..., j] = np.maximum(difference[..., j], error)
     return difference
 
@@ -140,6 +156,10 @@ def mesh_line(record: Record) -> AuditLine:
             f", as a check of a gait with {as_number(check['carried_from']):.4g} J/m lets expect"
         )
     change = abs(check["energy_per_metre"] - energy) / energy
+    values = [as_number(e.get("objective_per_metre")) for e in (reported, check)]
+    if "objective_per_metre" in reported:  # another objective must stand still too
+        change = max(change, abs(values[1] - values[0]) / abs(values[0]))
+        note += f"; objective {values[0]:.4g} and {values[1]:.4g} J/m"
     return residuals.MESH.judged(Worst(change, ""), note)
 
 

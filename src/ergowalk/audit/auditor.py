@@ -9,8 +9,10 @@ import xarray as xr
 
 from ergowalk.audit.asked import attribute_line, corridor_lines, finite_line, mesh_line
 from ergowalk.audit.bounds import bound_lines, pressure_line
+from ergowalk.audit.devices import device_lines
 from ergowalk.audit.loads import balance_lines, energy_lines
 from ergowalk.audit.motion import curve_lines, foot_lines, symmetry_lines
+from ergowalk.audit.objective import objective_line
 from ergowalk.audit.reading import read_record
 from ergowalk.audit.report import AuditReport
 from ergowalk.audit.rhythm import grid_lines, phase_line, rhythm_lines
@@ -48,6 +50,8 @@ def audit(dataset: xr.Dataset, folder: Path | None = None) -> AuditReport:
             *corridor_lines(record, folder),
             *symmetry_lines(record),
             *energy_lines(record),
+            objective_line(record),
+            *device_lines(record),
             mesh_line(record),
             *grid_lines(record),
             phase_line(record),

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ergowalk.audit import residuals
+from ergowalk.audit.devices import own_moments
 from ergowalk.audit.record import FLAT, FOREFOOT, HEEL, JOINTS, SWING, TOE, Record, as_number
 from ergowalk.audit.report import LEGS, AuditLine, Residual, Worst, largest, worst
 from ergowalk.audit.walker import Array
@@ -81,20 +82,20 @@ def _moment_line(
     return line.judged(Worst(over.value / record.walker.weight, over.where))
 
 
-def _physical_moment(record: Record, joint: int) -> Array:
-    """A joint moment (n, 2) where it is one.
+def physical_moment(record: Record, joint: int) -> Array:
+    """The walker's own moment (n, 2) at a joint, where it is one.
 
     Up to heel-off the toes move with the foot: the stored metatarsal moment only balances the
     last line of (1) there, and what a muscle must give is zero.
     """
-    moment = record.raw["joint_moment"][..., joint]
+    moment = own_moments(record)[..., joint]
     if JOINTS[joint] != "metatarsal":
         return moment
     return np.where(np.isin(record.phase, (HEEL, FLAT)), 0.0, moment)
 
 
 def _moment_excess(record: Record, joint: int, bound: float) -> Worst:
-    excess = np.abs(_physical_moment(record, joint)) - bound
+    excess = np.abs(physical_moment(record, joint)) - bound
     return worst(excess[..., None], record.time, LEGS, (JOINTS[joint],))
 
 
@@ -104,7 +105,7 @@ def _rate_excess(record: Record, joint: int, bound: float) -> Worst:
     Two strides in a row hold every pair; for each t2 the worst t1 is a running extreme of
     m -+ bound t, so no derivative is taken and a jump counts in full.
     """
-    moment = np.tile(_physical_moment(record, joint), (2, 1))
+    moment = np.tile(physical_moment(record, joint), (2, 1))
     time = np.concatenate([record.time, record.time + record.stride_time])
     ramp = bound * time[:, None]
     rise = (moment - ramp) - np.minimum.accumulate(moment - ramp)

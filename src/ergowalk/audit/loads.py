@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ergowalk.audit import balance, residuals
+from ergowalk.audit.devices import own_moments
 from ergowalk.audit.record import FOREFOOT, JOINTS, SEGMENTS, SWING, TOE, Record
 from ergowalk.audit.report import LEGS, AuditLine, Worst, largest, worst
 
@@ -49,7 +50,7 @@ def energy_lines(record: Record) -> list[AuditLine]:
     power = record.raw["joint_power"]
     rates = balance.relative_rates(record.trunk, record.segments)
     scale = max(float(np.max(np.abs(power))), 1.0)
-    mismatch = (power - record.raw["joint_moment"] * rates) / scale
+    mismatch = (power - own_moments(record) * rates) / scale
     spent = sum(
         record.pieces.absolute_integral(power[:, leg, joint])
         for leg in (0, 1)

@@ -95,6 +95,28 @@ class Pieces:
             total += self._lost_to_sign_changes(crossing[self.size[crossing] == size], curve)
         return total
 
+    def squared_slope_integral(self, curve: Array) -> float:
+        """Integral of the squared derivative of a curve (n,); jumps between pieces count nothing.
+
+        In every step the polynomial through its window is differentiated; the square of that is
+        integrated exactly.
+        """
+        nodes, weights = legendre.leggauss(WINDOW)
+        total = 0.0
+        for size in np.unique(self.size):
+            steps = np.flatnonzero(self.size == size)
+            scaled, centre, half = self._scaled(steps)
+            basis = legendre.legvander(scaled[:, :size], size - 1)
+            samples = curve[self.window[steps, :size]]
+            series = np.linalg.solve(basis, samples[..., None])[..., 0]
+            slope = legendre.legder(series.T)
+            left, right = self.time[self.step[steps]], self.time[self.step[steps] + 1]
+            at = (left + right)[:, None] / 2 + (right - left)[:, None] / 2 * nodes
+            inside = (at - centre[:, None]) / half[:, None]
+            rate = legendre.legval(inside.T, slope[:, None, :], tensor=False) / half
+            total += float(np.sum((right - left) / 2 * (weights @ rate**2)))
+        return total
+
     def values(self, curve: Array, at: Array, side: NDArray[np.int8]) -> Array:
         """Sampled curves (n, ...) at other instants ``at`` (m,) of the record: (m, ...).
 

@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from ergowalk.audit.record import JOINTS, PHASES, RHYTHM, SEGMENTS, UNKNOWN_PHASE, Record
+from ergowalk.audit.record import JOINTS, PHASES, RHYTHM, SEGMENTS, UNKNOWN_PHASE, Record, as_number
 from ergowalk.audit.walker import Array, Walker
 from ergowalk.errors import GaitFileError
 
@@ -42,6 +42,9 @@ VARIABLES: dict[str, tuple[str, ...]] = {
     "corridor_upper": ("time", "leg", "joint"),
 }
 """Variables of a gait file and their dimensions."""
+
+OPTIONAL = {"device_moment": ("time", "leg", "joint")}
+"""Variables of a gait with devices."""
 
 MAY_BE_MISSING = ("center_of_pressure", "corridor_lower", "corridor_upper")
 """Variables with NaN where they have no meaning."""
@@ -85,6 +88,9 @@ def read_record(dataset: xr.Dataset, file: str | None = None) -> Record:
 def _read(dataset: xr.Dataset) -> Record:
     time = _time(dataset)
     raw = {name: _variable(dataset, name, dims) for name, dims in VARIABLES.items()}
+    for name, dims in OPTIONAL.items():
+        if name in dataset.variables:
+            raw[name] = _variable(dataset, name, dims)
     return Record(
         time=time,
         raw=raw,
@@ -93,6 +99,8 @@ def _read(dataset: xr.Dataset) -> Record:
         step_length=_positive(dataset, "step_length"),
         stride_time=_positive(dataset, "stride_time"),
         energy_per_metre=_number(dataset, "energy_per_metre"),
+        stated=frozenset(map(str, dataset.attrs)),
+        objective_per_metre=as_number(dataset.attrs.get("objective_per_metre")),
         rhythm=_rhythm(dataset),
         problem=_problem(dataset),
         mesh_history=_mesh_history(dataset),

@@ -27,7 +27,8 @@ class Record:
     """The content of a gait file in plain arrays, SI units, legs in order.
 
     Motion: ``hip`` (n,), ``trunk`` (n,), ``segments``: four of (n, 2). ``raw`` holds every
-    variable as stored; ``phase`` (n, 2) indexes :data:`PHASES`.
+    variable as stored; ``phase`` (n, 2) indexes :data:`PHASES`; ``stated`` names the
+    attributes that are there.
     """
 
     time: Array
@@ -37,6 +38,8 @@ class Record:
     step_length: float
     stride_time: float
     energy_per_metre: float
+    objective_per_metre: float
+    stated: frozenset[str]
     rhythm: Mapping[str, float]
     problem: Mapping[str, Any]
     mesh_history: tuple[Mapping[str, Any], ...]

@@ -40,7 +40,13 @@ PERIODICITY = Residual("periodicity", "periodicity after a stride", 1e-6)
 LEG_SYMMETRY = Residual("leg_symmetry", "legs alike half a stride later", 1e-6)
 LOAD_SYMMETRY = Residual("load_symmetry", "loads alike half a stride later", 1e-6)
 ENERGY = Residual("energy", "energy per metre against the stored powers", 1e-3)
+OBJECTIVE = Residual("objective", "objective against the curves", 1e-3)
 JOINT_POWER = Residual("joint_power", "joint power against moment times rate (10)", 1e-6)
+DEVICE_LAW = Residual("device_law", "moments and angles of devices against their laws", 1e-4)
+DEVICE_ENERGY = Residual("device_energy", "energy that devices give over a stride", 1e-3)
+DEVICE_IN_PLACE = Residual(
+    "device_in_place", "no own moment where a device takes its place", 1e-3, PER_WEIGHT_METRE
+)
 WORK_ENERGY = Residual("work_energy", "work against mechanical energy", 1e-3)
 MESH = Residual("mesh", "energy per metre against a finer mesh", 1e-2)
 TIME_SPAN = Residual("time_span", "time runs from 0 to T", 1e-9, "T")

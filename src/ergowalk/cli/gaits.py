@@ -87,7 +87,7 @@ def _compared(path: Path) -> _Compared:
             measured=solution.measured,
             acceptable=dataset.attrs.get("acceptable") == 1,
             energy_per_metre=solution.energy_per_metre,
-            limits=solution.problem.limits.sentence(),
+            limits=solution.problem.conditions(),
             comparison=compare(dataset, human_of(dataset, path.absolute().parent)),
         )
     except InputError as error:

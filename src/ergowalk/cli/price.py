@@ -56,7 +56,7 @@ def run_price(arguments: Namespace) -> None:
 
 
 def _sentence(solution: Solution) -> str:
-    return f"E = {solution.energy_per_metre:.2f} J/m with {solution.problem.limits.sentence()}"
+    return f"E = {solution.energy_per_metre:.2f} J/m with {solution.problem.conditions()}"
 
 
 def _as_dict(found: Prices) -> dict[str, object]:

@@ -72,7 +72,12 @@ class Result:
             "status": solution.status,
             "energy_per_metre": float(solution.energy_per_metre),
             "energy_error": solution.energy_error,
-            "limits": problem.limits.sentence(),
+            "limits": problem.conditions(),
+            "objective_per_metre": solution.objective_per_metre,
+            "device_energy": {
+                joint: {"gives": gives, "takes": takes}
+                for joint, (gives, takes) in solution.device_energy.items()
+            },
             "cost_of_transport": solution.cost_of_transport,
             "energy_share": energy_shares(solution),
             "rhythm": solution.rhythm.as_dict(),
@@ -107,6 +112,8 @@ class Result:
                 f"{problem.stride_time_s:g} s, {speed:.3g} m/s",
             ),
             ("E", f"{joules} with {found['limits']}"),
+            *self._objective_row(),
+            *self._device_rows(),
             ("cost of transport", f"{found['cost_of_transport']:.4f} (E / M g)"),
             ("energy share", ", ".join(shares)),
             ("rhythm", _rhythm_text(found["rhythm"], found["rhythm_fixed"])),
@@ -125,6 +132,26 @@ class Result:
             ("status", f"{'acceptable' if self.accepted else 'NOT ACCEPTABLE'}: {found['status']}"),
             ("files", f"{self.folder}: {summarised(found['files'])}"),
         ]
+
+    def _objective_row(self) -> Rows:
+        """The value of what was minimised, where that is not E."""
+        objective = self.solution.problem.objective
+        if objective.is_eq10:
+            return []
+        value = self.solution.objective_per_metre
+        return [("objective", f"{value:.2f} J/m = {objective.sentence()}")]
+
+    def _device_rows(self) -> Rows:
+        """The devices, and what they give and take."""
+        devices = self.solution.problem.devices.sentence()
+        if not devices:
+            return []
+        works = [
+            f"{joint} gives {gives:.2f}, takes {takes:.2f}"
+            for joint, (gives, takes) in self.solution.device_energy.items()
+        ]
+        energy = f"{', '.join(works)} J/m" if works else "no work"
+        return [("devices", devices), ("their energy", f"{energy} (no part of E)")]
 
     def beside_paper(self) -> BesidePaper | None:
         """The gait beside what the paper prints, if it was found by the paper's method."""

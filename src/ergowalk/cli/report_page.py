@@ -46,7 +46,7 @@ def _as_dict(path: Path, solution: Solution) -> dict[str, object]:
         "acceptable": solution.acceptable,
         "energy_per_metre": solution.energy_per_metre,
         "energy_error": solution.energy_error,
-        "limits": solution.problem.limits.sentence(),
+        "limits": solution.problem.conditions(),
     }
 
 

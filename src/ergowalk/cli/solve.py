@@ -65,7 +65,7 @@ def solve_and_write(arguments: Namespace) -> Result:
     ):
         for name, content in inputs.items():
             check_not_foreign(folder / name, content)
-        progress.stage(f"solving {problem.name}: {problem.limits.sentence()}")
+        progress.stage(f"solving {problem.name}: {problem.conditions()}")
         solution = _solved(problem, choices, progress)
         progress.stage(f"writing {folder}")
         stored = _store(solution, inputs, folder)

@@ -1,5 +1,6 @@
 """Problem A: givens, constraints (2)-(9), objective (10), physical limits, presets."""
 
+from ergowalk.problem.devices import Device, Devices
 from ergowalk.problem.gait_problem import (
     JOINTS,
     Corridors,
@@ -9,6 +10,7 @@ from ergowalk.problem.gait_problem import (
     Limits,
     RhythmBounds,
 )
+from ergowalk.problem.objective import Objective
 from ergowalk.problem.presets import DEFAULT_PRESET, PRESETS, preset
 
 __all__ = [
@@ -16,10 +18,13 @@ __all__ = [
     "JOINTS",
     "PRESETS",
     "Corridors",
+    "Device",
+    "Devices",
     "DoubleSupport",
     "GaitProblem",
     "JointBounds",
     "Limits",
+    "Objective",
     "RhythmBounds",
     "preset",
 ]

@@ -170,9 +170,13 @@ def _table(value: Value, place: str, commented: bool) -> Iterator[str]:
     """The lines of one table: its own keys, then the tables below it."""
     fields = {name: f for name, f in type(value).model_fields.items() if not f.exclude}
     inner = {name: v for name in fields if isinstance(v := getattr(value, name), Value)}
-    keys = {name: getattr(value, name) for name in fields if name not in inner}
+    keys = {
+        name: v for name in fields if name not in inner and (v := getattr(value, name)) is not None
+    }
     yield from _keys(keys, fields, commented)
     for name, table in inner.items():
+        if not any(_table(table, "", False)):
+            continue  # nothing in it unless given
         path = f"{place}.{name}" if place else name
         yield ""
         if commented:
@@ -209,4 +213,6 @@ def _literal(value: Any) -> str:
         return json.dumps(str(value), ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, tuple):
         return f"[{', '.join(map(_literal, value))}]"
+    if isinstance(value, bool):
+        return str(value).lower()
     return repr(value)  # the shortest digits that read back as the same float

@@ -13,10 +13,13 @@ from ergowalk.body import Body
 from ergowalk.corridors import ANGLES, Corridor, HumanGait, human_gait
 from ergowalk.errors import BodyError, CorridorError, ProblemError
 from ergowalk.gait.rhythm import PRINTED_RHYTHM, PhaseOrder, Rhythm
+from ergowalk.problem.devices import Device, Devices
+from ergowalk.problem.objective import Objective
 from ergowalk.values import INPUT_ONLY, FiniteFloat, PositiveFloat, Value, invalid
 
 Off = Literal["off"]
 Bound = PositiveFloat | Off
+Width = PositiveFloat | Literal["same"] | Off
 Instant = FiniteFloat | tuple[FiniteFloat, FiniteFloat]
 
 JOINTS = ("hip", "knee", "ankle", "metatarsal")
@@ -180,18 +183,11 @@ class Limits(Value):
     moment_nm_per_kg: JointBounds = Field(
         default=JointBounds(), description="bounds on the joint moments, N m/kg: strength"
     )
-    moment_rate_cost_s3_per_m2: Bound = Field(
-        default="off",
-        description="weight of the stride integral of squared moment rates per kg, times "
-        "M/(2L), added to E; a smooth alternative to the bound",
-    )
 
     @property
     def bounds_moment_rate(self) -> bool:
-        """Whether hip, knee and ankle have a bound or a cost that makes the problem well posed."""
-        return self.moment_rate_cost_s3_per_m2 != "off" or all(
-            self.moment_rate_nm_per_kg_s.of(joint) is not None for joint in ANGLES
-        )
+        """Whether hip, knee and ankle have a bound that makes the problem well posed."""
+        return all(self.moment_rate_nm_per_kg_s.of(joint) is not None for joint in ANGLES)
 
     def sentence(self) -> str:
         """The limits in words, to stand beside every E."""
@@ -202,8 +198,6 @@ class Limits(Value):
             parts.append(f"|R_x| <= {self.friction_coefficient:g} R_y")
         parts += _joint_sentence("moment rate", self.moment_rate_nm_per_kg_s, "N m/(kg s)")
         parts += _joint_sentence("moment", self.moment_nm_per_kg, "N m/kg")
-        if self.moment_rate_cost_s3_per_m2 != "off":
-            parts.append(f"moment-rate cost {self.moment_rate_cost_s3_per_m2:g} s3/m2")
         return ", ".join(parts) or "no limits"
 
 
@@ -228,6 +222,18 @@ class Corridors(Value):
     width_sd: PositiveFloat = Field(
         default=1.0, description="half width of the corridors in standard deviations"
     )
+    hip_width_sd: Width = Field(
+        default="same", description="half width at the hip, 'same', or 'off' (no corridor)"
+    )
+    knee_width_sd: Width = Field(default="same", description="half width at the knee")
+    ankle_width_sd: Width = Field(default="same", description="half width at the ankle")
+
+    def width(self, joint: str) -> float | None:
+        """Half width at a joint in standard deviations, None where there is no corridor."""
+        value = getattr(self, f"{joint}_width_sd")
+        if value == "off":
+            return None
+        return self.width_sd if value == "same" else float(value)
 
 
 class GaitProblem(Value):
@@ -265,18 +271,61 @@ class GaitProblem(Value):
     corridors: Corridors = Field(default=Corridors(), description="human corridors (6)")
     rhythm: RhythmBounds = Field(default=RhythmBounds(), description="contact instants (3)")
     limits: Limits = Field(default=Limits(), description="physical limits")
+    objective: Objective = Field(
+        default=Objective(), description="what is minimised: a weighted sum, (10) alone by default"
+    )
+    devices: Devices = Field(default=Devices(), description="passive devices at the joints")
     folder: Path | None = Field(
         default=None, exclude=True, description="where relative file names start"
     )
+
+    @property
+    def well_posed(self) -> bool:
+        """Whether a bound or a cost keeps the moments from growing to spikes."""
+        return self.limits.bounds_moment_rate or self.objective.charges_moments
+
+    def conditions(self) -> str:
+        """What every E is stated with, in words: the limits, and what was minimised if not E."""
+        parts = [self.limits.sentence()]
+        if not self.objective.is_eq10:
+            parts.append(f"minimised: {self.objective.sentence()}")
+        if self.devices.sentence():
+            parts.append(f"devices: {self.devices.sentence()}")
+        return "; ".join(parts)
+
+    def devices_of(self, leg: int) -> tuple[tuple[str, Device], ...]:
+        """(joint, device) of every device of a leg (0 is leg 1 of the paper)."""
+        return tuple(self.devices.items())
 
     def human(self) -> HumanGait:
         """The human data that the corridors come from."""
         return human_gait(self.corridors.source, self.folder)
 
     def angle_corridors(self) -> dict[str, Corridor]:
-        """Corridors of hip, knee and ankle angle in radians (6)."""
-        human, width = self.human(), self.corridors.width_sd
-        return {joint: human.angle_corridor(joint, width) for joint in ANGLES}
+        """Corridors of hip, knee and ankle angle in radians (6).
+
+        One that is off is there too, :meth:`Corridors.width` says so: its middle is where a search
+        begins.
+        """
+        human, asked = self.human(), self.corridors
+        return {
+            joint: human.angle_corridor(joint, asked.width(joint) or asked.width_sd)
+            for joint in ANGLES
+        }
+
+    @model_validator(mode="before")
+    @classmethod
+    def _older_files(cls, data: Any) -> Any:
+        """The cost of moment rates once stood among the limits."""
+        limits = data.get("limits") if isinstance(data, dict) else None
+        if not isinstance(limits, dict) or "moment_rate_cost_s3_per_m2" not in limits:
+            return data
+        objective = data.get("objective", {})
+        weight = limits["moment_rate_cost_s3_per_m2"]
+        if weight != "off" and isinstance(objective, dict):
+            objective = {"moment_rate_squared_s3_per_m2": weight, **objective}
+        rest = {k: v for k, v in limits.items() if k != "moment_rate_cost_s3_per_m2"}
+        return {**data, "limits": rest, "objective": objective}
 
     @model_validator(mode="before")
     @classmethod

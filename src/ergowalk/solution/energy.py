@@ -9,6 +9,8 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline, PPoly
 
+from ergowalk.quantities import DEVICE_MOMENT
+
 Array = NDArray[np.float64]
 
 
@@ -82,3 +84,32 @@ def joint_energies(dataset: xr.Dataset) -> dict[str, float]:
     each = absolute_integrals(dataset["time"].to_numpy(), power.reshape(len(power), -1))
     by_joint = each.reshape(power.shape[1:]).sum(axis=0)
     return {str(j): float(e) for j, e in zip(dataset["joint"].to_numpy(), by_joint, strict=True)}
+
+
+def device_works(dataset: xr.Dataset) -> dict[str, tuple[float, float]]:
+    """What the devices at each joint give and take [J] over the stride, both legs together.
+
+    Joints without a device, and those whose device does no work, are left out.
+    """
+    if DEVICE_MOMENT not in dataset:
+        return {}
+    time = dataset["time"].to_numpy()
+    moment = dataset[DEVICE_MOMENT].transpose("time", "leg", "joint").to_numpy()
+    power = (moment * relative_rates(dataset)).reshape(len(time), -1)
+    power = np.nan_to_num(power)
+    both, net = absolute_integrals(time, power), np.zeros(power.shape[1])
+    for piece in smooth_pieces(time):
+        t = time[piece]
+        net += CubicSpline(t, power[piece]).integrate(t[0], t[-1])
+    gives, takes = (((both + sign * net) / 2).reshape(2, -1).sum(axis=0) for sign in (1, -1))
+    joints = [str(j) for j in dataset["joint"].to_numpy()]
+    works = zip(joints, gives, takes, strict=True)
+    return {j: (float(g), float(k)) for j, g, k in works if g + k > 0}
+
+
+def relative_rates(dataset: xr.Dataset) -> Array:
+    """Rates that the joint moments work on in (10), (n, 2, 4) [rad/s]."""
+    trunk = dataset["trunk_angular_velocity"].to_numpy()
+    segments = dataset["segment_angular_velocity"].transpose("time", "leg", "segment").to_numpy()
+    first = np.broadcast_to(trunk[:, None, None], (*segments.shape[:2], 1))
+    return np.diff(np.concatenate([first, segments], axis=2), axis=2)

@@ -17,7 +17,7 @@ from ergowalk.errors import GaitFileError, OutputError
 from ergowalk.gait.rhythm import Rhythm
 from ergowalk.problem import GaitProblem
 from ergowalk.problem.files import problem_from_toml
-from ergowalk.solution.energy import joint_energies
+from ergowalk.solution.energy import device_works, joint_energies
 
 if TYPE_CHECKING:
     from ergowalk.audit import AuditReport
@@ -57,6 +57,11 @@ class Solution:
     def energy_per_metre(self) -> float:
         """E of (10) [J/m] on the dense grid, as stored."""
         return float(self.dataset.attrs["energy_per_metre"])
+
+    @property
+    def objective_per_metre(self) -> float:
+        """What was minimised [J/m], as stored: E itself unless the problem says otherwise."""
+        return float(self.dataset.attrs.get("objective_per_metre", self.energy_per_metre))
 
     @property
     def cost_of_transport(self) -> float:
@@ -102,6 +107,16 @@ class Solution:
         """Part of E of each joint, both legs together [J/m]."""
         distance = 2 * float(self.dataset.attrs["step_length"])
         return {j: e / distance for j, e in joint_energies(self.dataset).items()}
+
+    @cached_property
+    def device_energy(self) -> dict[str, tuple[float, float]]:
+        """What the devices at each joint give and take, both legs together [J/m].
+
+        It is no part of E, which counts the walker's own moments.
+        """
+        distance = 2 * float(self.dataset.attrs["step_length"])
+        works = device_works(self.dataset)
+        return {j: (gives / distance, takes / distance) for j, (gives, takes) in works.items()}
 
     def audit(self) -> AuditReport:
         """Every residual of the audit, recomputed from the curves by independent code."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -12,10 +12,19 @@ from numpy.typing import NDArray
 
 from ergowalk.gait.loads import Sharing, inverse_dynamics
 from ergowalk.gait.rhythm import Contact
+from ergowalk.mechanics.dynamics import LegMoments
 from ergowalk.mechanics.kinematics import BodyMotion, joint_angles
 from ergowalk.problem import GaitProblem
 from ergowalk.problem.objective import eq10_joint_powers
-from ergowalk.quantities import AXES, JOINTS, LEGS, QUANTITIES, SEGMENTS
+from ergowalk.quantities import (
+    ALL_QUANTITIES,
+    AXES,
+    DEVICE_MOMENT,
+    JOINTS,
+    LEGS,
+    QUANTITIES,
+    SEGMENTS,
+)
 
 Array = NDArray[np.float64]
 
@@ -25,13 +34,15 @@ class Piece:
     """One phase of the half stride: instants [s], contacts, motion, sharing of the load.
 
     Arrays (n,), both ends included; where an acceleration or a moment may jump the instant stands
-    twice.
+    twice. ``devices`` are their moments [N m] by leg (0, 1) and joint, None where a device
+    bears all of the joint's moment.
     """
 
     time: Array
     contacts: tuple[Contact, Contact]
     motion: BodyMotion
     sharing: Sharing
+    devices: Mapping[tuple[int, str], Array | None] = field(default_factory=dict)
 
 
 def stride_dataset(problem: GaitProblem, pieces: Sequence[Piece]) -> xr.Dataset:
@@ -59,8 +70,12 @@ def _half_variables(problem: GaitProblem, piece: Piece) -> dict[str, Array]:
         joint_angles(body.leg(i), motion.trunk.angle, *(r.angle for r in segments[i]))
         for i in (0, 1)
     ]
-    powers = [eq10_joint_powers(loads.moments[i], motion.trunk, motion.legs[i]) for i in (0, 1)]
     moments = [[getattr(m, j) for j in JOINTS] for m in loads.moments]
+    fitted = device_part(moments, piece.devices)
+    own = [
+        [m - d for m, d in zip(*both, strict=True)] for both in zip(moments, fitted, strict=True)
+    ]
+    powers = [eq10_joint_powers(LegMoments(*own[i]), motion.trunk, motion.legs[i]) for i in (0, 1)]
     contacts = [np.full(piece.time.shape, int(contact)) for contact in piece.contacts]
     return {
         "time": piece.time,
@@ -75,11 +90,23 @@ def _half_variables(problem: GaitProblem, piece: Piece) -> dict[str, Array]:
         "segment_angular_acceleration": by_leg("acceleration"),
         "joint_angle": _stack(angles),
         "joint_moment": _stack(moments),
+        **({DEVICE_MOMENT: _stack(fitted)} if any(problem.devices.items()) else {}),
         "joint_power": _stack(powers),
         "ground_reaction_force": _stack(loads.reactions),
         "center_of_pressure": _stack(loads.pressures),
         "contact_phase": np.stack(contacts, axis=-1),
     }
+
+
+def device_part(
+    moments: Sequence[Sequence[Array]], devices: Mapping[tuple[int, str], Array | None]
+) -> list[list[Array]]:
+    """The part of the joint moments [N m] that devices bear, by leg and joint."""
+    found = [[np.zeros_like(m) for m in leg] for leg in moments]
+    for (leg, joint), moment in devices.items():
+        j = JOINTS.index(joint)
+        found[leg][j] = moments[leg][j] if moment is None else moment
+    return found
 
 
 def _stack(parts: Any) -> Array:
@@ -92,7 +119,7 @@ def _stack(parts: Any) -> Array:
 def _half_a_stride_later(problem: GaitProblem, first: dict[str, Array]) -> dict[str, Array]:
     second = {}
     for name, values in first.items():
-        dims = QUANTITIES[name].dims
+        dims = ALL_QUANTITIES[name].dims
         second[name] = values[:, ::-1] if "leg" in dims else values.copy()
     second["time"] = first["time"] + problem.stride_time_s / 2
     second["hip_position"] = first["hip_position"] + np.array([problem.step_length_m, 0.0])
@@ -105,7 +132,9 @@ def _corridors(problem: GaitProblem, time: Array) -> dict[str, Array]:
     lower = np.full((len(time), 2, len(JOINTS)), np.nan)
     upper = lower.copy()
     fraction = time / problem.stride_time_s
-    for j, (_, corridor) in enumerate(problem.angle_corridors().items()):
+    for j, (joint, corridor) in enumerate(problem.angle_corridors().items()):
+        if problem.corridors.width(joint) is None:
+            continue
         for leg, shift in enumerate((0.0, 0.5)):
             lower[:, leg, j] = corridor.lower(fraction + shift)
             upper[:, leg, j] = corridor.upper(fraction + shift)
@@ -114,7 +143,9 @@ def _corridors(problem: GaitProblem, time: Array) -> dict[str, Array]:
 
 def _labelled(values: dict[str, Array]) -> xr.Dataset:
     variables = {}
-    for name, quantity in QUANTITIES.items():
+    for name, quantity in ALL_QUANTITIES.items():
+        if name not in values:
+            continue
         if name == "time":
             continue
         attributes: dict[str, Any] = {

@@ -15,9 +15,10 @@ from ergowalk.problem import GaitProblem
 from ergowalk.problem.files import problem_to_toml
 from ergowalk.solution import Solution
 from ergowalk.solution.energy import joint_energies
+from ergowalk.solution.objective import objective_per_metre
 from ergowalk.solution.stride import Piece, stride_dataset
 from ergowalk.transcription.curves import Trajectory, joined
-from ergowalk.transcription.motion import body_motion, load_sharing
+from ergowalk.transcription.motion import body_motion, device_moments, load_sharing
 from ergowalk.transcription.walker import Walker
 
 SAMPLES = 9
@@ -43,13 +44,24 @@ def dense_gait(walker: Walker, order: PhaseOrder, trajectory: Trajectory) -> xr.
         dense = joined(samples)
         motion = body_motion(walker, phase, dense)
         sharing = load_sharing(walker, phase, dense, motion)
-        pieces.append(Piece(np.concatenate(time), phase.legs, motion, sharing))
+        devices = device_moments(walker, phase, dense, motion)
+        pieces.append(Piece(np.concatenate(time), phase.legs, motion, sharing, devices))
     return stride_dataset(walker.problem, pieces)
 
 
 def dense_energy(dataset: xr.Dataset, step_length: float) -> float:
     """E of (10) [J/m] from the dense curves."""
     return sum(joint_energies(dataset).values()) / (2 * step_length)
+
+
+def minimised(dataset: xr.Dataset, problem: GaitProblem) -> float:
+    """The objective [J/m] from the dense curves; E of (10) to the last digit where it is that."""
+    if problem.objective.is_eq10:
+        return dense_energy(dataset, problem.step_length_m)
+    try:
+        return objective_per_metre(dataset, problem)
+    except ValueError:  # a motion out of reach has no such integral
+        return float("nan")
 
 
 def rhythm_of(trajectory: Trajectory, stride: float) -> Rhythm:
@@ -80,6 +92,9 @@ def describe(
         {
             "title": f"energy-optimal gait, problem {problem.name}",
             "energy_per_metre": energy,
+            "objective_per_metre": energy
+            if problem.objective.is_eq10
+            else minimised(dataset, problem),
             "step_length": problem.step_length_m,
             "stride_time": problem.stride_time_s,
             "method": method,
@@ -88,7 +103,7 @@ def describe(
             "rhythm": json.dumps(rhythm.as_dict()),
             "body_parameters": json.dumps(problem.body.by_symbol()),
             "problem": problem_to_toml(problem),
-            "limits": problem.limits.sentence(),
+            "limits": problem.conditions(),
             "mesh_history": json.dumps(history),
             "ergowalk_version": __version__,
             **extra,

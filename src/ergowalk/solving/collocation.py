@@ -11,7 +11,14 @@ from ergowalk.problem import GaitProblem
 from ergowalk.problem.objective import energy_per_metre
 from ergowalk.solution import Solution
 from ergowalk.solution.progress import Report
-from ergowalk.solving.answer import dense_energy, dense_gait, describe, judged, rhythm_of
+from ergowalk.solving.answer import (
+    dense_energy,
+    dense_gait,
+    describe,
+    judged,
+    minimised,
+    rhythm_of,
+)
 from ergowalk.solving.check import MeshCheck
 from ergowalk.solving.memory import recall_for, remember
 from ergowalk.solving.stages import (
@@ -53,7 +60,7 @@ def solve_collocation(
 ) -> Solution:
     """The cheapest gait of all phase orders that the problem allows; see :func:`~.verb.solve`."""
     effort, store = Effort(), KernelStore()
-    weights = smoothing or (Smoothing() if problem.limits.bounds_moment_rate else FAINT)
+    weights = smoothing or (Smoothing() if problem.well_posed else FAINT)
     searches = [
         OrderSearch(problem, order, weights, effort, progress, store)
         for order in problem.rhythm.orders()
@@ -61,15 +68,13 @@ def solve_collocation(
     begun = None if start is None else _begin(searches, start)
     candidates = [begun] if begun else [_searched(s, perturbation) for s in searches]
     best = min(candidates, key=lambda c: (not c.result.minimum.converged, c.result.energy_at_nodes))
-    check = None
-    if begun is not None and begun.continued and start is not None and not recheck:
-        check = MeshCheck.of(start)
-        neighbour = _taken_over(begun, check, [])
-        if neighbour is not None:
-            found = _finished(neighbour, candidates, effort, weights)
-            if found.acceptable:
-                return found
-    if not problem.limits.bounds_moment_rate:
+    check = None if recheck or start is None else _check_of(start, best)
+    neighbour = _taken_over(best, check, [])
+    if neighbour is not None:
+        found = _finished(neighbour, candidates, effort, weights)
+        if found.acceptable:
+            return found
+    if not problem.well_posed:
         gait = _show_impulses(best)
     else:
         if begun is None and best.result.minimum.converged:
@@ -129,6 +134,13 @@ def _begin(searches: list[OrderSearch], start: Solution) -> Candidate | None:
     return None
 
 
+def _check_of(start: Solution, found: Candidate) -> MeshCheck | None:
+    """The check that a gait continued from another may take over."""
+    problem = found.search.problem
+    same = found.continued and start.problem.objective == problem.objective
+    return MeshCheck.of(start) if same and problem.well_posed else None
+
+
 def _taken_over(
     found: Candidate, check: MeshCheck | None, history: list[dict[str, Any]]
 ) -> Gait | None:
@@ -171,6 +183,8 @@ def _dense(
     dataset = dense_gait(search.walker, search.order, result.trajectory)
     energy = dense_energy(dataset, search.problem.step_length_m)
     history.append(_record(result, energy, **flags))
+    if not search.problem.objective.is_eq10:
+        history[-1]["objective_per_metre"] = minimised(dataset, search.problem)
     return dataset, energy
 
 
@@ -204,8 +218,9 @@ def _refine(coarse: Candidate, check_before: MeshCheck | None) -> Gait:
         check = Candidate(search, search.refined(final.result, mesh, 1.0))
         checked, confirmed = _dense(check, history)
         change = confirmed / reported - 1
+        moved = _moved(history[-2], history[-1])
         converged = check.result.minimum.converged
-        if not converged or abs(change) <= MESH_TOLERANCE:
+        if not converged or moved <= MESH_TOLERANCE:
             break
         if check.result.elements > MOST_ELEMENTS:
             break
@@ -218,13 +233,24 @@ def _refine(coarse: Candidate, check_before: MeshCheck | None) -> Gait:
             f"{check.result.elements} did not: {check.result.minimum.message}"
         )
         return Gait(final, dataset, history, status, settled=False)
-    settled = abs(change) <= MESH_TOLERANCE
+    settled = moved <= MESH_TOLERANCE
     status = (
         f"{'converged' if settled else 'not converged with the mesh'}: "
         f"E = {reported:.2f} J/m on {final.result.elements} elements, "
         f"{100 * change:+.2f} % on {check.result.elements}"
     )
+    if not search.problem.objective.is_eq10:
+        value = history[-2]["objective_per_metre"]
+        change = history[-1]["objective_per_metre"] / value - 1
+        status += f"; objective {value:.2f} J/m, {100 * change:+.2f} %"
     return Gait(final, dataset, history, status, settled)
+
+
+def _moved(reported: dict[str, Any], check: dict[str, Any]) -> float:
+    """By how much E, and the objective where it is another, differ on two meshes."""
+    names = ("energy_per_metre", "objective_per_metre")
+    pairs = [(float(check[n]), float(reported[n])) for n in names if n in reported]
+    return max(abs(new / old - 1) for new, old in pairs)
 
 
 def _show_impulses(coarse: Candidate) -> Gait:
@@ -277,8 +303,23 @@ def _sharpness(dataset: xr.Dataset, search: OrderSearch) -> dict[str, float]:
 
 def _failed(candidate: Candidate, history: list[dict[str, Any]], where: str) -> Gait:
     dataset, _ = _dense(candidate, history, final=True)
-    status = f"not converged {where}: {candidate.result.minimum.message}"
+    status = f"not converged {where}: {candidate.result.minimum.message}{_conflict(candidate)}"
     return Gait(candidate, dataset, history, status, settled=False)
+
+
+CONFLICT, MOST_NAMED = 1e-4, 4
+"""Violation (scaled) from which a constraint is in conflict, and how many of them are named."""
+
+
+def _conflict(candidate: Candidate) -> str:
+    """Which constraints no motion near the last one could satisfy together, worst first."""
+    result = candidate.result
+    violations = result.collocation.programme.violations(result.minimum.x)
+    worst = sorted((v, name) for name, v in violations.items() if v > CONFLICT)[::-1]
+    if not worst or result.minimum.violation <= CONFLICT:
+        return ""
+    named = ", ".join(name for _, name in worst[:MOST_NAMED])
+    return f"; in conflict: {named}" + (" and others" if len(worst) > MOST_NAMED else "")
 
 
 def _finished(

@@ -139,7 +139,9 @@ def given_numbers(problem: GaitProblem) -> Iterator[tuple[str, float]]:
     for name in ("step_length_m", "stride_time_s"):
         yield name, getattr(problem, name)
     yield "corridors.width_sd", problem.corridors.width_sd
-    for table in ("limits", "body"):
+    tables = ["limits", "body"]
+    tables += [] if problem.objective.is_eq10 else ["objective"]
+    for table in (*tables, "devices"):
         yield from _numbers(getattr(problem, table), table)
 
 

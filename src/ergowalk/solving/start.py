@@ -19,7 +19,9 @@ from ergowalk.problem import JOINTS, GaitProblem
 from ergowalk.quantities import SEGMENTS
 from ergowalk.solution import Solution
 from ergowalk.transcription.curves import Guess, Samples
-from ergowalk.transcription.walker import SHARING
+from ergowalk.transcription.guess import with_devices
+from ergowalk.transcription.motion import body_motion
+from ergowalk.transcription.walker import SHARING, Smoothing, Walker
 
 Array = NDArray[np.float64]
 
@@ -77,6 +79,7 @@ class StartingGait:
         force = data["ground_reaction_force"].transpose("time", "leg", "axis").to_numpy() / mass
         pressure = data["center_of_pressure"].transpose("time", "leg").to_numpy()[:, 1]
         shift = np.nan_to_num(pressure - tip)
+        walker = Walker(problem, Smoothing())
 
         def guess(i: int, parts: Array) -> Samples:
             start, end = (fractions[n] * stride for n in (phases[i].start, phases[i].end))
@@ -105,7 +108,10 @@ class StartingGait:
                 for name, line in zip(SHARING, (shift, force[:, 1, 0]), strict=True):
                     value[name], acceleration[name] = curve(line), 0 * at
                     rate[name] = 0 * at + (line[part][-1] - line[part][0]) / (end - start)
-            return Samples(value, rate, acceleration, control, algebraic)
+            samples = Samples(value, rate, acceleration, control, algebraic)
+            if not walker.fittings.devices:
+                return samples
+            return with_devices(walker, phases[i], samples, body_motion(walker, phases[i], samples))
 
         return guess
 

@@ -77,6 +77,7 @@ def solve(
         For a method, a solver or options that do not exist or do not go together.
     """
     _check_method(method, solver, spline, start)
+    _check_objective(problem, method)
     if starts is not None:
         _check_starts(method, start)
         return solve_from_starts(
@@ -115,6 +116,23 @@ def _check_method(
             f"means nothing to method {method!r}, which begins with the human means",
             "start a collocation with it",
             field="start",
+        )
+
+
+def _check_objective(problem: GaitProblem, method: str) -> None:
+    if method != "collocation" and not problem.objective.is_eq10:
+        raise ProblemError(
+            f"method {method!r} minimises (10) alone",
+            "leave out the table, or use method 'collocation'",
+            field="objective",
+            value=problem.objective.sentence(),
+        )
+    if method != "collocation" and any(problem.devices.items()):
+        raise ProblemError(
+            f"method {method!r} knows no devices",
+            "leave out the table, or use method 'collocation'",
+            field="devices",
+            value=problem.devices.sentence(),
         )
 
 

@@ -201,15 +201,20 @@ def _element_indices(where: PhaseIndices) -> NDArray[np.int64]:
 
 def _link_block(link: Link, problem: PhasedProblem, layout: Layout) -> Block:
     """Constraints on the values and rates at one boundary."""
-    keys = sorted(k for k in layout.boundary if k[0] == link.boundary and k[2] != "control")
+    keys = sorted(
+        k
+        for k in layout.boundary
+        if k[0] == link.boundary and (k[2] != "control" or k[1] in link.controls)
+    )
     time = ca.SX.sym("t")
     symbols = {k: ca.SX.sym("_".join(k[1:])) for k in keys}
     scaled = {k: layout.scale[layout.boundary[k]] * s for k, s in symbols.items()}
-    names = {k[1] for k in keys}
+    names = {k[1] for k in keys if k[2] != "control"}
+    controls = {n: scaled[link.boundary, n, "control"] for n in link.controls}
     states = {
         n: State(scaled[link.boundary, n, "value"], scaled[link.boundary, n, "rate"]) for n in names
     }
-    terms: Terms = link.function(Instant(time, states, {}, {}))
+    terms: Terms = link.function(Instant(time, states, controls, {}))
     kernel = Kernel(
         link.name,
         ca.vertcat(time, *symbols.values()),

@@ -8,9 +8,10 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from ergowalk.gait.rhythm import PhaseOrder, Rhythm, boundary_fractions, half_stride_phases
+from ergowalk.gait.rhythm import Phase, PhaseOrder, Rhythm, boundary_fractions, half_stride_phases
 from ergowalk.mechanics.dynamics import joint_moments_from, total_reaction
 from ergowalk.mechanics.foot import ankle_moment_under, metatarsal_moment_under
+from ergowalk.mechanics.kinematics import BodyMotion
 from ergowalk.problem import GaitProblem
 from ergowalk.transcription.curves import Guess, Samples, Trajectory
 from ergowalk.transcription.motion import body_motion
@@ -101,7 +102,7 @@ def human_guess(walker: Walker, order: PhaseOrder, times: Mapping[str, float]) -
         value, rate, acceleration = (_angles(walker, s, d) for d in (0, 1, 2))
         algebraic = {
             "foot_2": value["foot_2"],
-            "toes_2": value["foot_2"] + walker.leg.foot_angle,
+            "toes_2": value["foot_2"] + walker.legs[1].foot_angle,
             "foot_2_rate": rate["foot_2"],
             "toes_2_rate": rate["foot_2"],
         }
@@ -120,7 +121,9 @@ def _angles(walker: Walker, s: Array, derivative: int) -> dict[str, Array]:
             for j in ("hip", "knee", "ankle")
         )
         out[f"thigh_{leg}"], out[f"shank_{leg}"] = hip, hip - knee
-        out[f"foot_{leg}"] = ankle + out[f"shank_{leg}"] + (0 if derivative else walker.flat)
+        out[f"foot_{leg}"] = (
+            ankle + out[f"shank_{leg}"] + (0 if derivative else walker.flat[leg - 1])
+        )
     return out
 
 
@@ -138,9 +141,9 @@ def loaded_guess(walker: Walker, order: PhaseOrder, fit: Trajectory) -> Guess:
         motion = body_motion(walker, phase, samples)
         time = curves.start + curves.duration * fractions
         share = np.clip(1 - time / toe_off, 0.0, 1.0) if phase.double_support else 0.0 * time
-        total = total_reaction(walker.coefficients, motion)
-        two = (share * total[0], share * total[1])
-        one = (total[0] - two[0], total[1] - two[1])
+        force = total_reaction(walker.coefficients, motion)
+        two = (share * force[0], share * force[1])
+        one = (force[0] - two[0], force[1] - two[1])
         points, tip = walker.points(motion), walker.prints[1].toe_tip
         p_2 = ankle_moment_under(points[1], two, tip) if phase.double_support else 0.0 * time
         w_2 = metatarsal_moment_under(points[1], two, tip) if phase.double_support else p_2
@@ -148,7 +151,7 @@ def loaded_guess(walker: Walker, order: PhaseOrder, fit: Trajectory) -> Guess:
         (x_a, y_a), x_m = points[0].ankle.position, points[0].metatarsal.position[0]
         w_1 = first[2] + y_a * one[0] + (x_m - x_a) * one[1]
         moments = [*first, w_1, *second, w_2]
-        control = {n: m / mass for n, m in zip(_CONTROLS, moments, strict=True)}
+        total = {n: m / mass for n, m in zip(_CONTROLS, moments, strict=True)}
         rest = dict.fromkeys(SHARING, 0 * time)
         value = {**samples.value, **rest, "reaction_share": two[0] / mass}
         rate, acceleration = {**samples.rate, **rest}, {**samples.acceleration, **rest}
@@ -162,9 +165,34 @@ def loaded_guess(walker: Walker, order: PhaseOrder, fit: Trajectory) -> Guess:
             "foot_2_rate": motion.legs[1].foot.rate,
             "toes_2_rate": motion.legs[1].toes.rate,
         }
-        return Samples(value, rate, acceleration, control, algebraic)
+        samples = Samples(value, rate, acceleration, total, algebraic)
+        return with_devices(walker, phase, samples, motion)
 
     return guess
+
+
+def with_devices(walker: Walker, phase: Phase, samples: Samples, motion: BodyMotion) -> Samples:
+    """A guess whose controls are total moments per kg, divided between walker and devices.
+
+    Dampers in series start where their springs are slack, locks bear all.
+    """
+    fittings = walker.fittings
+    if not fittings.devices:
+        return samples
+    control, algebraic = dict(samples.control), dict(samples.algebraic)
+    value, rate = dict(samples.value), dict(samples.rate)
+    acceleration = dict(samples.acceleration)
+    for role, contact in enumerate(phase.legs):
+        for joint, device in fittings.acting(role, contact):
+            name = f"{joint}_{role + 1}"
+            x = fittings.deflection(role, joint, motion)
+            slip = f"slip_{name}"
+            value[slip], rate[slip], acceleration[slip] = x.angle, x.rate, 0 * x.rate
+            algebraic[f"lock_{name}"] = control.get(name, 0 * x.rate)
+            if name in control and device.kind not in ("locked", "free"):
+                bears = fittings.moment(role, joint, contact, motion, value, {})
+                control[name] = control[name] - bears
+    return Samples(value, rate, acceleration, control, algebraic)
 
 
 _CONTROLS = tuple(f"{j}_{i}" for i in (1, 2) for j in ("hip", "knee", "ankle", "metatarsal"))

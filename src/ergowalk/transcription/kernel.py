@@ -88,7 +88,8 @@ def phase_kernel(
             rows.add_call(local.call(path, float(c)), float(c))
         plus, minus = (ca.SX.sym(f"{sign}_{j}", inside.n_abs) for sign in ("plus", "minus"))
         rows.add_slacks(call, plus - minus, scale)
-        cost = cost + w * local.h * (scale * ca.sum1(plus + minus) + call.integrand)
+        charge = phase.absolute_weights[0] * plus + phase.absolute_weights[1] * minus
+        cost = cost + w * local.h * (scale * ca.sum1(charge) + call.integrand)
         absolutes.append(call.absolute / scale)
         slacks += [plus, minus]
     rows.add_call(local.call(path_at_mesh, 0.0), 0.0)

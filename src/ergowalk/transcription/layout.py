@@ -146,8 +146,9 @@ def _point(
             return register.add(lower, upper, scale)
         key = (edge, name, kind)
         if key not in boundary:
-            if is_last and name in problem.exchange:
-                boundary[key] = boundary[problem.phases[0].start, problem.exchange[name], kind]
+            first = (problem.phases[0].start, problem.exchange.get(name, ""), kind)
+            if is_last and first in boundary:
+                boundary[key] = boundary[first]
             else:
                 boundary[key] = register.add(-INF, INF, scale)
         register.tighten(boundary[key], lower, upper)

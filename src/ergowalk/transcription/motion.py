@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ergowalk.gait.loads import Sharing
 from ergowalk.gait.rhythm import Contact, Phase
+from ergowalk.mechanics.dynamics import LegMoments
 from ergowalk.mechanics.foot import reaction_from_moments, toe_chain
 from ergowalk.mechanics.kinematics import BodyMotion, LegMotion, Rotation, link
+from ergowalk.quantities import JOINTS
 from ergowalk.transcription.curves import Samples
 from ergowalk.transcription.phases import Instant, State
 from ergowalk.transcription.walker import Walker
@@ -34,10 +39,10 @@ def body_motion(walker: Walker, phase: Phase, samples: Samples) -> BodyMotion:
     leg = motion.legs[1]
     ankle = (
         motion.hip
-        + link(walker.leg.thigh_length, leg.thigh)
-        + link(walker.leg.shank_length, leg.shank)
+        + link(walker.legs[1].thigh_length, leg.thigh)
+        + link(walker.legs[1].shank_length, leg.shank)
     )
-    foot, toes = toe_chain(walker.leg, ankle, (walker.prints[1].toe_tip, 0.0))
+    foot, toes = toe_chain(walker.legs[1], ankle, (walker.prints[1].toe_tip, 0.0))
     return BodyMotion(
         motion.hip, motion.trunk, (motion.legs[0], LegMotion(leg.thigh, leg.shank, foot, toes))
     )
@@ -54,12 +59,56 @@ def load_sharing(walker: Walker, phase: Phase, samples: Samples, motion: BodyMot
     pressure = walker.prints[1].toe_tip + samples.value.get("pressure_shift", zero)
     points = walker.points(motion)[1]
     ankle, metatarsal = (
-        walker.mass * samples.control[name] for name in ("ankle_2", "metatarsal_2")
+        walker.mass
+        * (
+            samples.control.get(f"{joint}_2", zero)
+            + device_moment(walker, phase, samples, motion, 1, joint)
+        )
+        for joint in ("ankle", "metatarsal")
     )
     force_x, force_y = reaction_from_moments(points, ankle, metatarsal, pressure)
     if walker.linear_sharing:
         force_x = walker.mass * samples.value["reaction_share"]
     return Sharing(force_x, force_y, pressure)
+
+
+def device_moment(
+    walker: Walker, phase: Phase, samples: Samples, motion: BodyMotion, role: int, joint: str
+) -> Array:
+    """Moment of a device on the distal segment per kg, (n,); zero where none acts."""
+    zero = np.zeros_like(motion.trunk.angle)
+    contact = phase.legs[role]
+    found: Array = zero + walker.fittings.moment(
+        role, joint, contact, motion, samples.value, samples.algebraic
+    )
+    return found
+
+
+def device_moments(
+    walker: Walker, phase: Phase, samples: Samples, motion: BodyMotion
+) -> dict[tuple[int, str], Array | None]:
+    """Moments of the devices that act [N m], by role and joint; None for a lock.
+
+    A lock bears whatever the joint must bear.
+    """
+    found: dict[tuple[int, str], Array | None] = {}
+    for role, contact in enumerate(phase.legs):
+        for joint, device in walker.fittings.acting(role, contact):
+            moment = device_moment(walker, phase, samples, motion, role, joint)
+            found[role, joint] = None if device.kind == "locked" else walker.mass * moment
+    return found
+
+
+def own_part(
+    moments: LegMoments, role: int, devices: Mapping[tuple[int, str], Array | None]
+) -> LegMoments:
+    """What the walker itself gives of the joint moments of a leg [N m]."""
+
+    def own(joint: str) -> Any:
+        total, device = getattr(moments, joint), devices.get((role, joint), 0.0)
+        return 0 * total if device is None else total - device
+
+    return LegMoments(*(own(joint) for joint in JOINTS)) if devices else moments
 
 
 def _with_arrays(motion: BodyMotion, zero: Array) -> BodyMotion:

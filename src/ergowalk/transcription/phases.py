@@ -87,7 +87,8 @@ class Terms:
     """What a phase function gives back.
 
     ``rows`` are constraints (label, expression, lower, upper); ``absolute`` are expressions whose
-    absolute value is integrated into the objective, exactly, through two slacks each;
+    absolute value is integrated into the objective, exactly, through two slacks each (or their
+    two parts with the weights of the phase);
     ``integrand`` is integrated as it is.
     """
 
@@ -128,6 +129,9 @@ class PhaseModel:
         algebraics are extrapolated: without them a force leaks between the points.
     curves
         Given functions of time that the functions of this phase see in ``Instant.curves``.
+    absolute_weights
+        What the positive and the negative part of ``Terms.absolute`` are charged with; their sum
+        is positive.
     """
 
     name: str
@@ -142,15 +146,17 @@ class PhaseModel:
     at_ends: InstantFunction
     path_everywhere: bool = False
     curves: TimeCurves | None = None
+    absolute_weights: tuple[float, float] = (1.0, 1.0)
 
 
 @dataclass(frozen=True)
 class Link:
-    """Constraints on the coordinates and rates at one phase boundary."""
+    """Constraints on the coordinates and rates at one phase boundary, and on named controls."""
 
     name: str
     boundary: str
     function: InstantFunction
+    controls: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,13 @@ from ergowalk.problem import constraints as c
 from ergowalk.problem.objective import eq10_joint_powers
 from ergowalk.quantities import JOINTS
 from ergowalk.transcription.curves import PhaseCurves, Samples, Trajectory, joined
-from ergowalk.transcription.motion import body_motion, load_sharing
+from ergowalk.transcription.devices import LOADED_JOINTS
+from ergowalk.transcription.motion import (
+    body_motion,
+    device_moments,
+    load_sharing,
+    own_part,
+)
 from ergowalk.transcription.walker import Walker
 
 Array = NDArray[np.float64]
@@ -93,7 +99,7 @@ class _PhaseErrors:
         self.time = curves.start + curves.duration * fraction
         self.width = curves.duration * width
         self.motion, self.loads = _dense(walker, phase, self.samples)
-        powers = _powers(phase, self.motion, self.loads)
+        powers = _powers(walker, phase, self.samples, self.motion, self.loads)
         self.work = self.width * (np.abs(powers) @ _simpson(SAMPLES)).sum(axis=0)
 
     def largest(self, allowed: Allowance, work: float) -> Array:
@@ -112,12 +118,16 @@ class _PhaseErrors:
     def _moments(self) -> Array:
         """Distance of hip, knee and ankle moments from their parabolas [N m/kg]."""
         worst = np.zeros_like(self.time)
-        for leg, moments in enumerate(self.loads.moments, start=1):
-            for joint in ANGLES:
-                control = self.samples.control.get(f"{joint}_{leg}")
-                if control is not None:
-                    error = np.abs(getattr(moments, joint) / self.walker.mass - control)
-                    worst = np.maximum(worst, error)
+        devices = device_moments(self.walker, self.phase, self.samples, self.motion)
+        for role, moments in enumerate(self.loads.moments):
+            for joint in LOADED_JOINTS[self.phase.legs[role]]:
+                control = self.samples.control.get(f"{joint}_{role + 1}")
+                device = devices.get((role, joint), 0.0)
+                if device is None or (joint == "metatarsal" and control is not None):
+                    continue  # a lock bears anything; the metatarsal moment has no limit
+                wanted = 0.0 if control is None else control
+                own = (getattr(moments, joint) - device) / self.walker.mass
+                worst = np.maximum(worst, np.abs(own - wanted))
         return worst
 
     def _standing(self) -> list[int]:
@@ -170,8 +180,10 @@ class _PhaseErrors:
         fraction = self.time / walker.problem.stride_time_s
         for i, leg in enumerate(self.motion.legs):
             segments = (r.angle for r in (leg.thigh, leg.shank, leg.foot, leg.toes))
-            angles = joint_angles(walker.leg, self.motion.trunk.angle, *segments)
+            angles = joint_angles(walker.legs[i], self.motion.trunk.angle, *segments)
             for name, angle in zip(ANGLES, angles, strict=False):
+                if walker.problem.corridors.width(name) is None:
+                    continue
                 corridor, place = walker.corridors[name], fraction + 0.5 * i
                 outside = np.maximum(corridor.lower(place) - angle, angle - corridor.upper(place))
                 worst = np.maximum(worst, outside)
@@ -181,7 +193,8 @@ class _PhaseErrors:
         """Error of the quadrature of |power| in each element [J]."""
         scheme, curves = self.curves.scheme, self.curves
         nodes = joined([curves.in_element(k, scheme.points) for k in range(curves.elements)])
-        powers = _powers(self.phase, *_dense(self.walker, self.phase, nodes), count=scheme.m)
+        motion, loads = _dense(self.walker, self.phase, nodes)
+        powers = _powers(self.walker, self.phase, nodes, motion, loads, count=scheme.m)
         work = self.width * (np.abs(powers) @ scheme.weights).sum(axis=0)
         error: Array = np.abs(work - self.work)
         return error
@@ -193,11 +206,20 @@ def _dense(walker: Walker, phase: Phase, samples: Samples) -> tuple[BodyMotion, 
     return motion, inverse_dynamics(walker.problem.body, motion, phase.legs, sharing)
 
 
-def _powers(phase: Phase, motion: BodyMotion, loads: Loads, count: int = SAMPLES) -> Array:
-    """Joint powers (10) [W], (joints of both legs, n_elements, count)."""
+def _powers(
+    walker: Walker,
+    phase: Phase,
+    samples: Samples,
+    motion: BodyMotion,
+    loads: Loads,
+    count: int = SAMPLES,
+) -> Array:
+    """Powers of the walker's own moments (10) [W], (joints of both legs, n_elements, count)."""
     powers: list[Array] = []
-    for moments, leg in zip(loads.moments, motion.legs, strict=True):
-        powers += eq10_joint_powers(moments, motion.trunk, leg)
+    devices = device_moments(walker, phase, samples, motion)
+    for role, leg in enumerate(motion.legs):
+        own = own_part(loads.moments[role], role, devices)
+        powers += eq10_joint_powers(own, motion.trunk, leg)
     assert len(powers) == 2 * len(JOINTS)
     return np.stack(powers).reshape(len(powers), -1, count)
 

@@ -36,7 +36,8 @@ from ergowalk.mechanics.kinematics import (
 )
 from ergowalk.problem import JOINTS, DoubleSupport, GaitProblem
 from ergowalk.problem import constraints as c
-from ergowalk.problem.objective import eq10_joint_powers
+from ergowalk.problem.objective import Objective, eq10_joint_powers, squared_moments
+from ergowalk.transcription.devices import LOADED_JOINTS, Fittings
 from ergowalk.transcription.edges import BAND, corridor_edges
 from ergowalk.transcription.phases import (
     Coordinate,
@@ -65,21 +66,27 @@ class Smoothing:
     metatarsal_rate: float = 1e-4
     swing_foot: float = 1e-6
 
+    def scaled(self, factor: float) -> Smoothing:
+        """The same beside an objective that charges work ``factor`` times as dearly as E."""
+        return Smoothing(*(factor * weight for weight in vars(self).values()))
+
 
 class Walker:
     """What all phases of a gait problem share, and the functions of an instant."""
 
     def __init__(self, problem: GaitProblem, smoothing: Smoothing) -> None:
         self.problem, self.smoothing = problem, smoothing
-        self.leg: LegParameters = problem.body.leg(0)
+        self.small = smoothing.scaled(_work_price(problem.objective))
+        self.legs: tuple[LegParameters, LegParameters] = (problem.body.leg(0), problem.body.leg(1))
         self.mass, self.gravity = problem.body.total_mass, problem.body.gravity_m_s2
         self.coefficients: Coefficients = coefficients(problem.body)
         self.corridors: dict[str, Corridor] = problem.angle_corridors()
         self.prints = (
-            leading_print(self.leg),
-            trailing_print(self.leg, problem.step_length_m),
+            leading_print(self.legs[0]),
+            trailing_print(self.legs[1], problem.step_length_m),
         )
-        self.flat = HALF_PI - self.leg.foot_angle
+        self.flat = tuple(HALF_PI - leg.foot_angle for leg in self.legs)
+        self.fittings = Fittings(problem)
         self.linear_sharing = problem.double_support is DoubleSupport.LINEAR
 
     # --- unknowns -------------------------------------------------------------------------
@@ -96,24 +103,29 @@ class Walker:
             names.append("foot_2")
         angles = [Coordinate(n, rate_scale=RATE, acceleration_scale=ACCELERATION) for n in names]
         if phase.legs[1] is Contact.TOE and self.linear_sharing:
-            toes = -self.leg.toe_length  # the load passes between metatarsal joint and toe tip
+            toes = -self.legs[1].toe_length  # the load passes between metatarsal joint and toe tip
             angles.append(Coordinate("pressure_shift", toes, 0.0))
             angles.append(Coordinate("reaction_share", rate_scale=FORCE))
-        return tuple(angles)
+        return (*angles, *self.fittings.coordinates(phase))
 
     def controls(self, phase: Phase) -> tuple[Unknown, ...]:
-        """Joint moments per kg that can do work, or carry load over the toes."""
+        """The walker's own moments per kg that can do work, or carry load over the toes."""
         names = ["hip_1", "knee_1", "ankle_1", "hip_2", "knee_2"]
         if phase.legs[0] is Contact.FOREFOOT:
             names.append("metatarsal_1")
         if phase.legs[1] is Contact.TOE:
             names += ["ankle_2", "metatarsal_2"]
+        names = [n for n in names if self._own(phase, n)]
         limits = self.problem.limits.moment_nm_per_kg
         bounds = {n: limits.of(n[:-2]) or np.inf for n in names}
         return tuple(Unknown(n, -bounds[n], bounds[n]) for n in names)
 
+    def _own(self, phase: Phase, name: str) -> bool:
+        role = int(name[-1]) - 1
+        return self.fittings.own(role, name[:-2], phase.legs[role])
+
     def algebraics(self, phase: Phase) -> tuple[Unknown, ...]:
-        """Ground reactions per kg, and the trailing foot while it stands on its toe tip."""
+        """Ground reactions and moments of locks per kg; the trailing foot on its toe tip."""
         cap = self.problem.limits.vertical_reaction_body_weights
         highest = np.inf if cap == "off" else cap * self.gravity
         unknowns = []
@@ -124,19 +136,19 @@ class Walker:
         if phase.legs[1] is Contact.TOE:
             unknowns += [Unknown("foot_2"), Unknown("toes_2")]
             unknowns += [Unknown(n, scale=RATE) for n in ("foot_2_rate", "toes_2_rate")]
-        return tuple(unknowns)
+        return (*unknowns, *self.fittings.algebraics(phase))
 
     # --- the motion at an instant ---------------------------------------------------------
 
     def motion(self, phase: Phase, instant: Instant) -> BodyMotion:
         """The whole walker from the minimal coordinates."""
         q = instant.coordinates
-        foot_1 = _rotation(q["foot_1"]) if "foot_1" in q else Rotation(self.flat)
+        foot_1 = _rotation(q["foot_1"]) if "foot_1" in q else Rotation(self.flat[0])
         in_line = c.eq7_toes_in_line(phase.legs[0])
-        toes_1 = sole(self.leg, foot_1) if in_line else Rotation(HALF_PI)
+        toes_1 = sole(self.legs[0], foot_1) if in_line else Rotation(HALF_PI)
         if phase.legs[1] is Contact.SWING:
             foot_2 = _rotation(q["foot_2"])
-            toes_2 = sole(self.leg, foot_2)
+            toes_2 = sole(self.legs[1], foot_2)
         else:
             z = instant.algebraics
             foot_2 = Rotation(z.get("foot_2", 0.0), z.get("foot_2_rate", 0.0))
@@ -150,12 +162,16 @@ class Walker:
     def hip(self, contact: Contact, leg: LegMotion) -> Any:
         """Hip point over the print of leg 1."""
         if contact is Contact.HEEL:
-            return hip_over_contact(self.leg, leg, "heel", (self.prints[0].heel, 0.0))
-        return hip_over_contact(self.leg, leg, "metatarsal", (self.prints[0].metatarsal, 0.0))
+            return hip_over_contact(self.legs[0], leg, "heel", (self.prints[0].heel, 0.0))
+        rests = (self.prints[0].metatarsal, 0.0)
+        return hip_over_contact(self.legs[0], leg, "metatarsal", rests)
 
     def points(self, motion: BodyMotion) -> tuple[LegPoints, LegPoints]:
         """Points of both legs."""
-        one, two = (leg_points(self.leg, leg, motion.hip) for leg in motion.legs)
+        one, two = (
+            leg_points(leg, moving, motion.hip)
+            for leg, moving in zip(self.legs, motion.legs, strict=True)
+        )
         return one, two
 
     # --- what must hold -------------------------------------------------------------------
@@ -164,7 +180,8 @@ class Walker:
         """(6) for every joint whose angle is known at this instant."""
         terms = Terms()
         for label, place in self.corridor_places(phase, instant, motion):
-            terms.between(label, place, -1.0, 1.0)
+            if self.problem.corridors.width(label.split()[1]) is not None:
+                terms.between(label, place, -1.0, 1.0)
         return terms
 
     def corridor_places(
@@ -175,7 +192,7 @@ class Walker:
         for i, leg in enumerate(motion.legs):
             known = i == 0 or phase.legs[1] is Contact.SWING or "foot_2" in instant.algebraics
             angles = joint_angles(
-                self.leg,
+                self.legs[i],
                 motion.trunk.angle,
                 *(r.angle for r in (leg.thigh, leg.shank, leg.foot, leg.toes)),
             )
@@ -200,7 +217,7 @@ class Walker:
                 heights = c.eq4_clearances(contact, points[i])
                 terms.nonnegative("clearance (4)", *(y / METRE for y in heights))
                 if contact is Contact.TOE:
-                    bend = c.eq7_toe_rotation(contact, self.leg, motion.legs[i])
+                    bend = c.eq7_toe_rotation(contact, self.legs[i], motion.legs[i])
                     terms.nonnegative("toe rotation (7)", bend)
         return terms
 
@@ -245,7 +262,7 @@ class Walker:
     ) -> Terms:
         """(9) where the centre of pressure has room; where it has none it is an equation."""
         terms = Terms()
-        points, moments = self.points(motion), self.moments(phase, instant)
+        points, moments = self.points(motion), self.moments(phase, instant, motion)
         for i, contact in enumerate(phase.legs):
             if contact in (Contact.FLAT, Contact.FOREFOOT):
                 pressure = pressure_moment(points[i], moments[i].ankle, reactions[i])
@@ -256,7 +273,7 @@ class Walker:
     def dynamics_rows(self, phase: Phase, instant: Instant, motion: BodyMotion) -> Terms:
         """(1), the foot lines included, per kg; and powers of (10)."""
         terms = Terms()
-        moments, reactions = self.moments(phase, instant), self.reactions(instant)
+        moments, reactions = self.moments(phase, instant, motion), self.reactions(instant)
         one, two = (LegMoments(*(self.mass * getattr(m, j) for j in JOINTS)) for m in moments)
         forces = (_scaled(self.mass, reactions[0]), _scaled(self.mass, reactions[1]))
         left = inertial_load(self.coefficients, motion)
@@ -275,13 +292,45 @@ class Walker:
             terms.equal("foot (1)", balance)
         if phase.legs[1] is Contact.TOE:
             self._toe_phase_rows(terms, instant, points[1], moments[1], reactions[1])
-        for contact, leg, moment in zip(phase.legs, motion.legs, moments, strict=True):
-            powers = eq10_joint_powers(moment, motion.trunk, leg)
-            terms.absolute += powers[: _WORKING_JOINTS[contact]]
+        self.fittings.equations(terms, phase, instant, motion)
+        self._charge(terms, phase, instant, motion)
         if "foot_2" in instant.coordinates:
             acceleration = instant.coordinates["foot_2"].acceleration
-            terms.integrand = self.smoothing.swing_foot * acceleration**2
+            terms.integrand = terms.integrand + self.small.swing_foot * acceleration**2
         return terms
+
+    def _charge(self, terms: Terms, phase: Phase, instant: Instant, motion: BodyMotion) -> None:
+        """Powers of the walker's own moments (10), and the cost of their squares."""
+        objective, own = self.problem.objective, self.own_moments(instant)
+        paid = list(instant.controls.values())
+        for i, contact in enumerate(phase.legs):
+            powers = eq10_joint_powers(own[i], motion.trunk, motion.legs[i])
+            working = list(zip(JOINTS, powers, strict=True))[: len(LOADED_JOINTS[contact])]
+            charged = [power for joint, power in working if self._own(phase, f"{joint}_{i + 1}")]
+            held = self.fittings.own_in_swing(i, contact, motion, instant)
+            if held is not None:
+                paid.append(held.angle)
+                legs = motion.legs[i]
+                charged.append(held.angle * (legs.foot.rate - legs.shank.rate))
+                self._hold_rows(terms, held)
+            if objective.charges_work:
+                terms.absolute += charged
+        if objective.moment_squared_s_per_m2:
+            squares = objective.moment_squared_s_per_m2 * squared_moments(paid)
+            terms.integrand = terms.integrand + squares
+
+    def _hold_rows(self, terms: Terms, held: Rotation) -> None:
+        """Limits and cost of the own ankle moment that holds a device in swing."""
+        limits = self.problem.limits
+        strength, speed = (
+            table.of("ankle") for table in (limits.moment_nm_per_kg, limits.moment_rate_nm_per_kg_s)
+        )
+        if strength is not None:
+            terms.between("control bounds", held.angle / strength, -1.0, 1.0)
+        if speed is not None:
+            terms.between("moment rate", held.rate / speed, -1.0, 1.0)
+        price = self.problem.objective.moment_rate_squared_s3_per_m2 + self.small.moment_rate
+        terms.integrand = terms.integrand + price * held.rate**2
 
     def _toe_phase_rows(
         self, terms: Terms, instant: Instant, points: LegPoints, moments: LegMoments, reaction: Any
@@ -302,8 +351,32 @@ class Walker:
         rest = c.eq4_resting_point(Contact.TOE, points, self.prints[1])
         terms.equal("toe contact (4)", *(e / METRE for e in rest[:2]), *rest[2:])
 
-    def moments(self, phase: Phase, instant: Instant) -> tuple[LegMoments, LegMoments]:
-        """Joint moments of both legs per kg; those that do not occur are zero."""
+    def moments(
+        self, phase: Phase, instant: Instant, motion: BodyMotion
+    ) -> tuple[LegMoments, LegMoments]:
+        """Joint moments of both legs per kg, the walker's own and those of devices.
+
+        A massless foot in swing bears none.
+        """
+        own = self.own_moments(instant)
+        if not self.fittings.devices:
+            return own
+        devices = self.fittings.at(phase, instant, motion)
+        one, two = (
+            LegMoments(
+                *(
+                    getattr(own[i], joint) + devices[i].get(joint, 0.0)
+                    if joint in LOADED_JOINTS[contact]
+                    else 0.0
+                    for joint in JOINTS
+                )
+            )
+            for i, contact in enumerate(phase.legs)
+        )
+        return one, two
+
+    def own_moments(self, instant: Instant) -> tuple[LegMoments, LegMoments]:
+        """The walker's own moments of both legs per kg; those that do not occur are zero."""
         one, two = (
             LegMoments(*(instant.controls.get(f"{joint}_{i}", 0.0) for joint in JOINTS))
             for i in (1, 2)
@@ -332,17 +405,13 @@ class Walker:
         return terms
 
 
-_WORKING_JOINTS = {
-    Contact.SWING: 2,
-    Contact.HEEL: 3,
-    Contact.FLAT: 3,
-    Contact.FOREFOOT: 4,
-    Contact.TOE: 4,
-}
-"""How many of hip, knee, ankle, metatarsal joint can do work in each contact."""
-
 SHARING = ("pressure_shift", "reaction_share")
 """The two lines of (12): from the toe tip to the centre of pressure [m], and R_2x per kg."""
+
+
+def _work_price(objective: Objective) -> float:
+    """What a joule gained and lost again costs, over what it costs in E; 1 if work is free."""
+    return sum(objective.of_work) / 2 if objective.charges_work else 1.0
 
 
 def _rotation(state: State) -> Rotation:

@@ -9,6 +9,7 @@ import numpy as np
 from ergowalk.gait.rhythm import BOUNDARIES, Contact, Phase, PhaseOrder, half_stride_phases
 from ergowalk.problem import JOINTS, GaitProblem
 from ergowalk.problem import constraints as c
+from ergowalk.transcription.device_links import device_links, fixed_moments
 from ergowalk.transcription.phases import Instant, Link, PhasedProblem, PhaseModel, Terms
 from ergowalk.transcription.walker import SHARING, Smoothing, Walker
 
@@ -58,6 +59,7 @@ def walking_problem(
             at_ends,
             path_everywhere=phase.legs[1] is Contact.TOE,
             curves=walker.corridor_curves,
+            absolute_weights=problem.objective.of_work,
         )
 
     return _chain(walker, order, model, with_loads=True)
@@ -85,12 +87,17 @@ def kinematic_problem(problem: GaitProblem, order: PhaseOrder) -> PhasedProblem:
         def nothing(instant: Instant) -> Terms:
             return Terms()
 
-        algebraics = tuple(z for z in walker.algebraics(phase) if not z.name.startswith("reaction"))
+        loads = ("reaction", "lock")
+        algebraics = tuple(z for z in walker.algebraics(phase) if not z.name.startswith(loads))
         return PhaseModel(
             "fit_" + phase.name,
             phase.start,
             phase.end,
-            tuple(q for q in walker.coordinates(phase) if q.name not in SHARING),
+            tuple(
+                q
+                for q in walker.coordinates(phase)
+                if q.name not in SHARING and not q.name.startswith("slip")
+            ),
             (),
             algebraics,
             1.0,
@@ -120,18 +127,19 @@ def _chain(
     exchange = c.eq2_exchange(tuple(sorted(names - own)))
     fixed = {
         key: value
-        for key, value in c.fixed_at_boundaries(walker.flat).items()
-        if with_loads or key[2] != "control"
+        for key, value in c.fixed_at_boundaries(walker.flat[0]).items()
+        if key[2] != "control"
     }
+    if with_loads:
+        fixed |= fixed_moments(walker, phases)
     if walker.linear_sharing and with_loads:
         fixed |= {("other_toe_off", n, "value"): 0.0 for n in SHARING}
     at_toe_off = next(p.legs[0] for p in phases if p.end == "other_toe_off")
     limits = problem.limits
     rates = {f"{j}_{i}": limits.moment_rate_nm_per_kg_s.of(j) for j in JOINTS for i in (1, 2)}
-    weight = limits.moment_rate_cost_s3_per_m2
-    smoothing, price = walker.smoothing, 0.0 if weight == "off" else weight
-    cost = dict.fromkeys(JOINTS, price + smoothing.moment_rate)
-    cost["metatarsal"] = price + smoothing.metatarsal_rate
+    small, price = walker.small, problem.objective.moment_rate_squared_s3_per_m2
+    cost = dict.fromkeys(JOINTS, price + small.moment_rate)
+    cost["metatarsal"] = price + small.metatarsal_rate
     shortest = c.SHORTEST_PHASE * problem.stride_time_s
     return PhasedProblem(
         phases=models,
@@ -145,6 +153,7 @@ def _chain(
         links=(
             Link("toe_off", "other_toe_off", lambda t: walker.toe_off(at_toe_off, t)),
             Link("landing", "half_stride", walker.landing),
+            *(device_links(walker, phases) if with_loads else ()),
         ),
         control_rates={n: r for n, r in rates.items() if r is not None},
         control_rate_cost={f"{j}_{i}": cost[j] for j in JOINTS for i in (1, 2)},

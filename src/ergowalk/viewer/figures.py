@@ -56,7 +56,7 @@ def headline(solution: Solution, acceptable: bool) -> Rows:
     weight = body.total_mass * body.gravity_m_s2
     speed = 2 * problem.step_length_m / problem.stride_time_s
     verdict = "acceptable" if acceptable else "NOT ACCEPTABLE"
-    limits = [("with the limits", problem.limits.sentence())]
+    limits = [("with the limits", problem.conditions())]
     status = f"{verdict}: {solution.status}"
     if solution.measured:
         limits, status = [], solution.status

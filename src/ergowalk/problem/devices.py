@@ -1,0 +1,198 @@
+"""Devices at the joints: locks, free hinges, springs and dampers, as a user writes them down."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Literal, Self
+
+from pydantic import Field, model_validator
+
+from ergowalk.errors import ProblemError
+from ergowalk.gait.rhythm import Contact
+from ergowalk.mechanics.devices import SENSE, Law
+from ergowalk.values import FiniteFloat, NonNegativeFloat, Value, invalid
+
+Kind = Literal["locked", "free", "spring", "damper", "parallel", "series"]
+PhaseName = Literal["swing", "heel", "flat", "forefoot", "toe"]
+Joint = Literal["hip", "knee", "ankle", "metatarsal"]
+
+EVERY_PHASE: tuple[PhaseName, ...] = ("swing", "heel", "flat", "forefoot", "toe")
+
+_NEEDS = {
+    "locked": (False, False),
+    "free": (False, False),
+    "spring": (True, False),
+    "damper": (False, True),
+    "parallel": (True, True),
+    "series": (True, True),
+}
+"""Whether each kind has a stiffness and a damping."""
+
+
+class Device(Value):
+    """A passive device between the two segments of a joint."""
+
+    _error = ProblemError
+
+    kind: Kind = Field(
+        description="'locked', 'free' (no moment at all), 'spring', 'damper', or both 'parallel' "
+        "(side by side) or in 'series'"
+    )
+    own_moment: bool = Field(
+        default=True,
+        strict=True,
+        description="whether the walker's own moment acts beside the device (and alone where a "
+        "latch is open); false: the device stands in its place",
+    )
+    stiffness_nm_per_rad: NonNegativeFloat = Field(
+        default=0.0, description="stiffness of the spring, N m/rad"
+    )
+    stiffness_below_nm_per_rad: NonNegativeFloat | Literal["same"] = Field(
+        default="same",
+        description="stiffness below the rest angle, N m/rad, or 'same'",
+    )
+    damping_nms_per_rad: NonNegativeFloat = Field(default=0.0, description="damping, N m s/rad")
+    rest_angle_deg: FiniteFloat | Literal["latched"] = Field(
+        default=0.0,
+        description="joint angle at which a spring is slack or a lock holds, degrees; 'latched': "
+        "a lock holds whatever angle it closes at",
+    )
+    active: tuple[PhaseName, ...] = Field(
+        default=EVERY_PHASE,
+        description="contact phases of its leg in which the device acts; it has a latch if these "
+        "are not all",
+    )
+
+    @property
+    def latch(self) -> bool:
+        """Whether it acts in some contact phases only."""
+        return set(self.active) != set(EVERY_PHASE)
+
+    def acts(self, contact: Contact) -> bool:
+        """Whether it acts while its leg touches the ground so."""
+        return contact.name.lower() in self.active
+
+    @property
+    def below(self) -> float:
+        """Stiffness below the rest angle [N m/rad]."""
+        below = self.stiffness_below_nm_per_rad
+        return self.stiffness_nm_per_rad if below == "same" else float(below)
+
+    @property
+    def rest(self) -> float:
+        """Rest angle [rad]; zero where it is that at which the latch closes."""
+        return 0.0 if self.rest_angle_deg == "latched" else math.radians(self.rest_angle_deg)
+
+    @property
+    def law(self) -> Law:
+        """Its moments; none for a lock or a free hinge."""
+        above = self.stiffness_nm_per_rad
+        same = self.stiffness_below_nm_per_rad == "same"
+        return Law(above, above if same else self.below, self.damping_nms_per_rad)
+
+    def sentence(self) -> str:
+        """The device in words."""
+        words: list[str] = [self.kind]
+        if self.stiffness_nm_per_rad or self.below:
+            two = "" if self.stiffness_below_nm_per_rad == "same" else f" ({self.below:g} below)"
+            words.append(f"{self.stiffness_nm_per_rad:g}{two} N m/rad")
+        if self.damping_nms_per_rad:
+            words.append(f"{self.damping_nms_per_rad:g} N m s/rad")
+        if self.kind not in ("free", "damper"):
+            rest = self.rest_angle_deg
+            words.append("as latched" if rest == "latched" else f"at {rest:g} deg")
+        if self.latch:
+            words.append(f"in {', '.join(self.active)}")
+        if self.own_moment and self.kind not in ("locked", "free"):
+            words.append("beside the own moment")
+        return " ".join(words)
+
+    @model_validator(mode="after")
+    def _goes_together(self) -> Self:
+        stiff, damped = _NEEDS[self.kind]
+        if not stiff and (self.stiffness_nm_per_rad or self.stiffness_below_nm_per_rad != "same"):
+            raise self._odd("stiffness_nm_per_rad", self.stiffness_nm_per_rad, "stiffness")
+        if not damped and self.damping_nms_per_rad:
+            raise self._odd("damping_nms_per_rad", self.damping_nms_per_rad, "damping")
+        if self.kind == "series":
+            self._check_series()
+        if self.rest_angle_deg == "latched" and not (self.kind == "locked" and self.latch):
+            raise invalid(
+                "rest_angle_deg",
+                "latched",
+                "only a lock with a latch holds the angle that it closes at",
+                "give the rest angle in degrees",
+            )
+        if not self.active or len(set(self.active)) != len(self.active):
+            raise invalid(
+                "active",
+                list(self.active),
+                "must name one phase or more, each once",
+                f"choose from {', '.join(EVERY_PHASE)}",
+            )
+        return self
+
+    def _odd(self, field: str, value: float, what: str) -> Exception:
+        return invalid(
+            field,
+            value,
+            f"a device of kind '{self.kind}' has no {what}",
+            "leave it out, or choose kind 'parallel' or 'series'",
+        )
+
+    def _check_series(self) -> None:
+        if not (self.stiffness_nm_per_rad > 0 and self.damping_nms_per_rad > 0):
+            raise invalid(
+                "stiffness_nm_per_rad",
+                self.stiffness_nm_per_rad,
+                "a spring and a damper in series both need a value above zero",
+                "give stiffness_nm_per_rad and damping_nms_per_rad, or another kind",
+            )
+        if self.stiffness_below_nm_per_rad != "same" or self.latch:
+            raise invalid(
+                "kind",
+                "series",
+                "in series the spring has one slope and no latch",
+                "leave out stiffness_below_nm_per_rad and active",
+            )
+
+
+class Devices(Value):
+    """The devices of both legs, by joint; none unless given."""
+
+    _error = ProblemError
+
+    hip: Device | None = Field(default=None, description="device at the hips")
+    knee: Device | None = Field(default=None, description="device at the knees")
+    ankle: Device | None = Field(default=None, description="device at the ankles")
+    metatarsal: Device | None = Field(default=None, description="device at the metatarsal joints")
+
+    def at(self, joint: str) -> Device | None:
+        """The device at a joint."""
+        device: Device | None = getattr(self, joint)
+        return device
+
+    def items(self) -> Iterator[tuple[str, Device]]:
+        """(joint, device) of every device."""
+        for joint in SENSE:
+            device = self.at(joint)
+            if device is not None:
+                yield joint, device
+
+    def sentence(self) -> str:
+        """All devices in words; empty if there is none."""
+        return "; ".join(f"{joint} {device.sentence()}" for joint, device in self.items())
+
+    @model_validator(mode="after")
+    def _toes_rest_in_line(self) -> Self:
+        toes = self.metatarsal
+        if toes is not None and toes.rest_angle_deg != 0.0:
+            raise invalid(
+                "metatarsal.rest_angle_deg",
+                toes.rest_angle_deg,
+                "must be 0: the toes are in line with the sole, of no moment, while the foot "
+                "swings (7)",
+                "leave it out",
+            )
+        return self

@@ -22,7 +22,7 @@ from ergowalk.audit.report import Residual
 from ergowalk.cli.parser import build_parser
 from ergowalk.problem import DEFAULT_PRESET, PRESETS, preset
 from ergowalk.problem.files import json_schema, problem_to_toml
-from ergowalk.quantities import QUANTITIES
+from ergowalk.quantities import ALL_QUANTITIES
 
 API = {
     **{name: f"ergowalk.{name}" for name in ergowalk.__all__},
@@ -86,7 +86,7 @@ def variables() -> str:
     """The variables of a gait file."""
     rows = [
         (f"`{q.name}`", ", ".join(q.dims), q.units, q.symbol, q.long_name)
-        for q in QUANTITIES.values()
+        for q in ALL_QUANTITIES.values()
     ]
     return table(("variable", "dimensions", "unit", "symbol", "meaning"), rows)
 

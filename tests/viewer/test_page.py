@@ -107,7 +107,7 @@ def test_the_page_says_what_a_reader_asks(page: str, solution: Solution) -> None
         "peak moment",
         "positive [J/m]",
         "RMS distance",
-        "all 33 lines pass",
+        "all 36 lines pass",
         "stride_time_s = 1.14",
         "ergowalk solve problem.toml -o gait",
     ):

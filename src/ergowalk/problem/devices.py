@@ -158,6 +158,33 @@ class Device(Value):
             )
 
 
+class EasedDevice(Device):
+    """A device that the walker helps out, for a price: where the search for a gait begins."""
+
+    help_price: float = Field(default=1.0, description="weight of the squared help per kg, s3/m2")
+
+    @classmethod
+    def of(cls, device: Device) -> Device:
+        """The device beside an own moment that may not have one; others as they are.
+
+        A lock becomes a stiff spring with a damper.
+        """
+        locked = device.kind == "locked"
+        if device.own_moment and device.kind not in ("locked", "free"):
+            return device
+        fields = {name: getattr(device, name) for name in Device.model_fields}
+        if device.kind == "free" or (locked and device.rest_angle_deg == "latched"):
+            fields |= {"kind": "parallel", "rest_angle_deg": 0.0}
+        elif locked:
+            stiff = {"stiffness_nm_per_rad": STIFF, "damping_nms_per_rad": STIFF / 50}
+            fields |= {"kind": "parallel", **stiff, "active": EVERY_PHASE}
+        return cls(**{**fields, "own_moment": True})
+
+
+STIFF = 400.0
+"""Stiffness [N m/rad] of what stands for a lock while a search begins."""
+
+
 class Devices(Value):
     """The devices of both legs, by joint; none unless given."""
 
@@ -179,6 +206,12 @@ class Devices(Value):
             device = self.at(joint)
             if device is not None:
                 yield joint, device
+
+    def eased(self) -> Devices:
+        """All of them with the help of the walker where it may give none in the end."""
+        helped = {joint: EasedDevice.of(device) for joint, device in self.items()}
+        eased: Devices = self.replace(**helped)
+        return eased
 
     def sentence(self) -> str:
         """All devices in words; empty if there is none."""

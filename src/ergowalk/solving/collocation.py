@@ -20,6 +20,7 @@ from ergowalk.solving.answer import (
     rhythm_of,
 )
 from ergowalk.solving.check import MeshCheck
+from ergowalk.solving.easing import eased, needs_easing
 from ergowalk.solving.memory import recall_for, remember
 from ergowalk.solving.stages import (
     COARSE,
@@ -108,6 +109,8 @@ class Gait:
 
 def _searched(search: OrderSearch, perturbation: Perturbation | None) -> Candidate:
     """The gait of one phase order on few elements."""
+    if needs_easing(search.problem):
+        return Candidate(search, eased(search, perturbation))
     held = search.fixed_rhythm(search.fit(), perturbation)
     if not held.minimum.converged or search.problem.rhythm.fixed:
         return Candidate(search, held)

@@ -178,6 +178,18 @@ class OrderSearch:
         mesh, stage = self._mesh(curves.times, level), f"mesh level {level:g}"
         return self._run(stage, self.phased, mesh, Start.at(curves), solver, start)
 
+    def stage(
+        self,
+        words: str,
+        mesh: Mesh,
+        start: Start,
+        solver: Ipopt | None = None,
+        before: StageResult | None = None,
+    ) -> StageResult:
+        """A stage of a search, called so in words, as far as the barrier of the search."""
+        solver = solver or _warm(1e-4, SEARCH_BARRIER)
+        return self._run(words, self.phased, mesh, start, solver, before)
+
     def impulsive(self, start: StageResult, mesh: Mesh | None = None) -> StageResult:
         """The gait of a problem without minimiser; by default on the graded mesh of the search.
 

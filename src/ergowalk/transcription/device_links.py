@@ -25,7 +25,7 @@ def fixed_moments(walker: Walker, phases: Sequence[Phase]) -> dict[tuple[str, st
     held = {f"{joint}_{role + 1}" for joint, role, _ in _held(walker, phases)}
     fixed = {
         key: value
-        for key, value in c.fixed_at_boundaries(walker.flat[0]).items()
+        for key, value in c.fixed_at_boundaries(walker.flat).items()
         if key[2] == "control" and key[1] in there and key[1] not in held
     }
     fixed = {k: v for k, v in fixed.items() if _at(walker, phases, *k[:2])}

@@ -14,7 +14,7 @@ from ergowalk.gait.rhythm import Contact, Phase
 from ergowalk.mechanics.devices import SENSE, joint_rotation
 from ergowalk.mechanics.kinematics import BodyMotion, LegMotion, Rotation, leg_points
 from ergowalk.problem import JOINTS, GaitProblem
-from ergowalk.problem.devices import Device
+from ergowalk.problem.devices import Device, EasedDevice
 from ergowalk.transcription.phases import Coordinate, Instant, Terms, Unknown
 
 RATE, ACCELERATION = 3.0, 30.0
@@ -193,6 +193,18 @@ class Fittings:
             value = device.law.moment(x.angle, x.rate)
             rate = device.law.moment_rate(x.angle, x.rate, x.acceleration)
         return Rotation(value / self.mass, rate / self.mass)
+
+    def help(self, phase: Phase, instant: Instant, motion: BodyMotion) -> Any:
+        """Price of the own moments that will have to do without in the end, squared per kg."""
+        price: Any = 0.0
+        for (role, joint), device in self.devices.items():
+            if isinstance(device, EasedDevice):
+                own = instant.controls.get(f"{joint}_{role + 1}", 0.0)
+                if joint == "ankle":
+                    held = self.own_in_swing(role, phase.legs[role], motion, instant)
+                    own = own if held is None else held.angle
+                price = price + device.help_price * own**2
+        return price
 
     def closing(self, role: int, joint: str, motion: BodyMotion) -> list[Any]:
         """Zero where a latch closes: a lock at rest (at its angle), a spring without a moment."""

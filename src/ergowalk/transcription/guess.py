@@ -8,11 +8,18 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from ergowalk.gait.rhythm import Phase, PhaseOrder, Rhythm, boundary_fractions, half_stride_phases
+from ergowalk.gait.rhythm import (
+    Contact,
+    Phase,
+    PhaseOrder,
+    Rhythm,
+    boundary_fractions,
+    half_stride_phases,
+)
 from ergowalk.mechanics.dynamics import joint_moments_from, total_reaction
 from ergowalk.mechanics.foot import ankle_moment_under, metatarsal_moment_under
 from ergowalk.mechanics.kinematics import BodyMotion
-from ergowalk.problem import GaitProblem
+from ergowalk.problem import Device, GaitProblem
 from ergowalk.transcription.curves import Guess, Samples, Trajectory
 from ergowalk.transcription.motion import body_motion
 from ergowalk.transcription.walker import SHARING, Walker
@@ -122,7 +129,7 @@ def _angles(walker: Walker, s: Array, derivative: int) -> dict[str, Array]:
         )
         out[f"thigh_{leg}"], out[f"shank_{leg}"] = hip, hip - knee
         out[f"foot_{leg}"] = (
-            ankle + out[f"shank_{leg}"] + (0 if derivative else walker.flat[leg - 1])
+            ankle + out[f"shank_{leg}"] + (0 if derivative else walker.flats[leg - 1])
         )
     return out
 
@@ -189,10 +196,36 @@ def with_devices(walker: Walker, phase: Phase, samples: Samples, motion: BodyMot
             slip = f"slip_{name}"
             value[slip], rate[slip], acceleration[slip] = x.angle, x.rate, 0 * x.rate
             algebraic[f"lock_{name}"] = control.get(name, 0 * x.rate)
+            if joint == "ankle" and _stands_still(walker, role, contact, device):
+                _follow_shank(value, rate, acceleration, role, x.angle)
+                motion = body_motion(walker, phase, Samples(value, rate, acceleration, {}, {}))
             if name in control and device.kind not in ("locked", "free"):
                 bears = fittings.moment(role, joint, contact, motion, value, {})
                 control[name] = control[name] - bears
     return Samples(value, rate, acceleration, control, algebraic)
+
+
+def _stands_still(walker: Walker, role: int, contact: Contact, device: Device) -> bool:
+    """Whether a swinging foot cannot turn against its shank."""
+    if contact is not Contact.SWING:
+        return False
+    if device.kind == "locked" and device.rest_angle_deg != "latched":
+        return True
+    moving = walker.fittings.moves_swing_foot(role, contact)
+    return moving is device and not device.damping_nms_per_rad
+
+
+def _follow_shank(
+    value: dict[str, Array],
+    rate: dict[str, Array],
+    acceleration: dict[str, Array],
+    role: int,
+    deflection: Array,
+) -> None:
+    """The foot turned to where its device is slack, and moving with the shank."""
+    foot, shank = f"foot_{role + 1}", f"shank_{role + 1}"
+    value[foot] = value[foot] - deflection
+    rate[foot], acceleration[foot] = rate[shank], acceleration[shank]
 
 
 _CONTROLS = tuple(f"{j}_{i}" for i in (1, 2) for j in ("hip", "knee", "ankle", "metatarsal"))

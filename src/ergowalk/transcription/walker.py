@@ -85,7 +85,9 @@ class Walker:
             leading_print(self.legs[0]),
             trailing_print(self.legs[1], problem.step_length_m),
         )
-        self.flat = tuple(HALF_PI - leg.foot_angle for leg in self.legs)
+        self.leg = self.legs[0]
+        self.flats = tuple(HALF_PI - leg.foot_angle for leg in self.legs)
+        self.flat = self.flats[0]
         self.fittings = Fittings(problem)
         self.linear_sharing = problem.double_support is DoubleSupport.LINEAR
 
@@ -143,7 +145,7 @@ class Walker:
     def motion(self, phase: Phase, instant: Instant) -> BodyMotion:
         """The whole walker from the minimal coordinates."""
         q = instant.coordinates
-        foot_1 = _rotation(q["foot_1"]) if "foot_1" in q else Rotation(self.flat[0])
+        foot_1 = _rotation(q["foot_1"]) if "foot_1" in q else Rotation(self.flat)
         in_line = c.eq7_toes_in_line(phase.legs[0])
         toes_1 = sole(self.legs[0], foot_1) if in_line else Rotation(HALF_PI)
         if phase.legs[1] is Contact.SWING:
@@ -315,6 +317,7 @@ class Walker:
                 self._hold_rows(terms, held)
             if objective.charges_work:
                 terms.absolute += charged
+        terms.integrand = terms.integrand + self.fittings.help(phase, instant, motion)
         if objective.moment_squared_s_per_m2:
             squares = objective.moment_squared_s_per_m2 * squared_moments(paid)
             terms.integrand = terms.integrand + squares

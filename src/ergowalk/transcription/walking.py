@@ -127,7 +127,7 @@ def _chain(
     exchange = c.eq2_exchange(tuple(sorted(names - own)))
     fixed = {
         key: value
-        for key, value in c.fixed_at_boundaries(walker.flat[0]).items()
+        for key, value in c.fixed_at_boundaries(walker.flat).items()
         if key[2] != "control"
     }
     if with_loads:

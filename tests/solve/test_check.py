@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import json
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 import xarray as xr
 
+from ergowalk.problem import GaitProblem, Objective, preset
+from ergowalk.problem.files import problem_to_toml
 from ergowalk.solution import Solution
+from ergowalk.solving.candidate import Candidate
 from ergowalk.solving.check import NEIGHBOUR, MeshCheck
+from ergowalk.solving.collocation import check_of
 
 
 def checked(gait: Solution, *, acceptable: bool = True, **finer: float) -> Solution:
@@ -68,3 +74,23 @@ def test_a_check_taken_over_twice_still_belongs_to_the_gait_that_was_checked(
 def test_a_gait_that_is_not_acceptable_or_was_not_checked_has_no_check(gait: Solution) -> None:
     assert MeshCheck.of(checked(gait, acceptable=False)) is None
     assert MeshCheck.of(gait) is None
+
+
+def continued(problem: GaitProblem, continued: bool = True) -> Any:
+    """A stage that continued another, as far as its check needs it."""
+    return Candidate(SimpleNamespace(problem=problem), SimpleNamespace(), continued)  # type: ignore[arg-type]
+
+
+def test_a_check_is_taken_over_for_the_same_objective_on_the_same_mesh_alone(
+    gait: Solution,
+) -> None:
+    problem = preset("berbyuk2002")
+    start = checked(gait)
+    start = Solution(start.dataset.assign_attrs(problem=problem_to_toml(problem)))
+    longer = problem.replace(step_length_m=0.77)
+    assert check_of(start, continued(longer)) == MeshCheck.of(start)
+    assert check_of(start, continued(longer, False)) is None
+    squared = problem.replace(objective=Objective(moment_rate_squared_s3_per_m2=1e-3))
+    assert check_of(start, continued(squared)) is None
+    impulsive = preset("berbyuk2002-printed")
+    assert check_of(start, continued(impulsive)) is None

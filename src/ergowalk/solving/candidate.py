@@ -1,0 +1,82 @@
+"""A stage of one phase order, and the gait that becomes of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import xarray as xr
+
+from ergowalk.solving.answer import dense_energy, dense_gait, minimised
+from ergowalk.solving.stages import OrderSearch, StageResult
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A stage of one phase order; whether it continued that of a neighbour on the same mesh."""
+
+    search: OrderSearch
+    result: StageResult
+    continued: bool = False
+
+
+@dataclass(frozen=True)
+class Gait:
+    """The gait to be reported, with the record of its meshes."""
+
+    candidate: Candidate
+    dataset: xr.Dataset
+    history: list[dict[str, Any]]
+    status: str
+    settled: bool
+
+
+def record(result: StageResult, energy: float, **flags: bool) -> dict[str, Any]:
+    """One line of the mesh history."""
+    return {
+        "elements": result.elements,
+        "points": result.points,
+        "energy_per_metre": energy,
+        "iterations": result.minimum.iterations,
+        "converged": result.minimum.converged,
+        "violation": result.minimum.violation,
+        "stationarity": result.minimum.stationarity,
+        "strict_minimum": result.minimum.strict,
+        "solve_time": result.minimum.solve_time,
+        **flags,
+    }
+
+
+def dense(
+    candidate: Candidate, history: list[dict[str, Any]], **flags: bool
+) -> tuple[xr.Dataset, float]:
+    """Dense curves of a stage and their E [J/m], with a line more in the history."""
+    search, result = candidate.search, candidate.result
+    dataset = dense_gait(search.walker, search.order, result.trajectory)
+    energy = dense_energy(dataset, search.problem.step_length_m)
+    history.append(record(result, energy, **flags))
+    if not search.problem.objective.is_eq10:
+        history[-1]["objective_per_metre"] = minimised(dataset, search.problem)
+    return dataset, energy
+
+
+def failed(candidate: Candidate, history: list[dict[str, Any]], where: str) -> Gait:
+    """What is shown of a search that did not converge, and which constraints are in conflict."""
+    dataset, _ = dense(candidate, history, final=True)
+    status = f"not converged {where}: {candidate.result.minimum.message}{_conflict(candidate)}"
+    return Gait(candidate, dataset, history, status, settled=False)
+
+
+CONFLICT, MOST_NAMED = 1e-4, 4
+"""Violation (scaled) from which a constraint is in conflict, and how many of them are named."""
+
+
+def _conflict(candidate: Candidate) -> str:
+    """Which constraints no motion near the last one could satisfy together, worst first."""
+    result = candidate.result
+    violations = result.collocation.programme.violations(result.minimum.x)
+    worst = sorted((v, name) for name, v in violations.items() if v > CONFLICT)[::-1]
+    if not worst or result.minimum.violation <= CONFLICT:
+        return ""
+    named = ", ".join(name for _, name in worst[:MOST_NAMED])
+    return f"; in conflict: {named}" + (" and others" if len(worst) > MOST_NAMED else "")

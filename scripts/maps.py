@@ -28,7 +28,7 @@ EVERY = 0.1
 def valley(found: Landscape) -> str:
     """The cheapest walk at round speeds, and the steps of people there."""
     rows = []
-    for speed, length, time, energy in found.valley:
+    for speed, length, time, energy, short, long in found.valley:
         if abs(speed / EVERY - round(speed / EVERY)) > 1e-6:
             continue
         people = "-"
@@ -40,13 +40,22 @@ def valley(found: Landscape) -> str:
             (
                 f"{speed:.1f}",
                 f"{length:.3f}",
+                f"{short:.2f} to {long:.2f}",
                 f"{time:.3f}",
                 f"{120 / time:.0f}",
                 people,
                 f"{energy:.2f}",
             )
         )
-    head = ("speed [m/s]", "L [m]", "T [s]", "cadence [1/min]", "people", "E [J/m]")
+    head = (
+        "speed [m/s]",
+        "L [m]",
+        "within 0.5 %",
+        "T [s]",
+        "cadence [1/min]",
+        "people, scaled",
+        "E [J/m]",
+    )
     return table(head, rows)
 
 

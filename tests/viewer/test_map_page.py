@@ -39,9 +39,11 @@ def landscape(reason: str = "killed after its limit of 3 s") -> dict[str, Any]:
         "triangles": [[0, 1, 2]],
         "speed": [2 * x / t for x, t in zip(lengths, times, strict=True)],
         "cadence": [120 / t for t in times],
-        "valley": [[1.2, 0.62, 1.03, 40.5], [1.25, 0.65, 1.04, 41.0]],
+        "valley": [[1.2, 0.62, 1.03, 40.5, 0.61, 0.64], [1.25, 0.65, 1.04, 41.0, 0.64, 0.66]],
         "people": [[1.1, 105.0, 6.0], [1.3, 112.0, 6.0]],
-        "people_source": "people",
+        "people_name": "people, scaled",
+        "plain": [[1.1, 108.0, 6.0], [1.3, 115.0, 6.0]],
+        "plain_name": "people",
         "cases": cases,
     }
 
@@ -157,7 +159,8 @@ def test_both_planes_show_every_case_the_valley_and_what_is_beside_it(page: Any)
     assert page.locator(".isoline").count() >= 2
     page.locator(".plane").select_option("1")
     assert page.locator(".case").count() == 4
-    assert page.locator(".people-line").count() == 1
+    assert page.locator(".people-line").count() == 2
+    assert page.locator(".people-band").count() == 1
     assert page.locator(".valley-line").count() == 1
     wide = page.evaluate("document.documentElement.scrollWidth - window.innerWidth")
     assert wide <= 0

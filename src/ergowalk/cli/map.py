@@ -68,7 +68,14 @@ def run_map(arguments: Namespace) -> None:
         emit("\n".join([title, *_table(valley), f"map: {target}: {names}"]))
 
 
-_VALLEY = ("speed_m_s", "step_length_m", "stride_time_s", "energy_per_metre")
+_VALLEY = (
+    "speed_m_s",
+    "step_length_m",
+    "stride_time_s",
+    "energy_per_metre",
+    "shortest_alike_m",
+    "longest_alike_m",
+)
 
 
 def _choices(given: list[str]) -> dict[str, str]:

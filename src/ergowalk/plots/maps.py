@@ -43,12 +43,13 @@ class Landscape:
         Triangles of accepted neighbours.
     speed, cadence : (n,) arrays [m/s, steps/min], or None
         None where the sweep varies only one of step length and stride time.
-    valley : (k, 4) array
+    valley : (k, 6) array
         Speed [m/s], step length [m], stride time [s] and E [J/m] of the cheapest walk at each
-        speed that lies inside the map.
-    people : (k, 3) array
-        Speed [m/s], cadence and its SD between people [steps/min].
-    people_source : str
+        speed that lies inside the map, and the step lengths [m] between which E is nearly as low.
+    people, plain : (k, 3) arrays
+        Speed [m/s], cadence and its SD between people [steps/min]: scaled to the legs of the
+        walker, and as they are.
+    people_name, plain_name : str
     """
 
     x: Array
@@ -62,7 +63,9 @@ class Landscape:
     cadence: Array | None
     valley: Array
     people: Array
-    people_source: str
+    people_name: str
+    plain: Array
+    plain_name: str
 
 
 def draw_map(landscape: Landscape, title: str = "") -> Figure:
@@ -73,7 +76,7 @@ def draw_map(landscape: Landscape, title: str = "") -> Figure:
             _curve(figure.subplots(), landscape)
         else:
             both = landscape.speed is not None
-            figure = Figure(figsize=(9.6 if both else 5.4, 4.3), layout="constrained")
+            figure = Figure(figsize=(9.6 if both else 5.4, 4.6), layout="constrained")
             panels: Any = figure.subplots(1, 2 if both else 1, squeeze=False)[0]
             filled = _swept(panels[0], landscape)
             if both:
@@ -110,8 +113,12 @@ def _swept(axes: Axes, found: Landscape) -> Any:
     for speed in SPEEDS:
         _line_of_speed(axes, speed, low, high)
     if len(found.valley):
-        axes.plot(found.valley[:, 2], found.valley[:, 1], color="white", linewidth=2.6)
-        axes.plot(found.valley[:, 2], found.valley[:, 1], color=style.LEG_2, linewidth=1.6)
+        speed, length, time, _, short, long = found.valley.T
+        around = np.concatenate([short, long[::-1]])
+        times = 2 * around / np.concatenate([speed, speed[::-1]])
+        axes.fill(times, around, color=style.LEG_2, alpha=0.25, lw=0)
+        axes.plot(time, length, color="white", linewidth=2.6)
+        axes.plot(time, length, color=style.LEG_2, linewidth=1.6)
     axes.set_xlim(*low)
     axes.set_ylim(*high)
     return filled
@@ -145,19 +152,31 @@ def _speeds(axes: Axes, found: Landscape) -> None:
     if len(found.people):
         speed, cadence, sd = found.people.T
         axes.fill_between(speed, cadence - sd, cadence + sd, color=style.BAND, alpha=0.45, lw=0)
-        label = f"people, mean ± SD ({found.people_source})"
-        axes.plot(speed, cadence, color=style.HUMAN, linewidth=1.4, linestyle="--", label=label)
+        kind: Any = {"color": style.HUMAN, "label": found.people_name}
+        axes.plot(speed, cadence, linewidth=1.4, linestyle="--", **kind)
+    if len(found.plain):
+        kind = {"color": style.HUMAN, "label": found.plain_name}
+        axes.plot(found.plain[:, 0], found.plain[:, 1], linewidth=1.2, linestyle=":", **kind)
     if len(found.valley):
-        speed, cadence = found.valley[:, 0], 120 / found.valley[:, 2]
+        speed, _, time, _, short, long = found.valley.T
+        cadence = 120 / time
+        low, high = 60 * speed / long, 60 * speed / short
+        axes.fill_between(speed, low, high, color=style.LEG_2, alpha=0.25, lw=0)
         axes.plot(speed, cadence, color="white", linewidth=2.6)
-        axes.plot(speed, cadence, color=style.LEG_2, linewidth=1.6, label="valley of E")
+        axes.plot(
+            speed,
+            cadence,
+            color=style.LEG_2,
+            linewidth=1.6,
+            label="cheapest at each speed; within 0.5 % of it",
+        )
     axes.set_xlim(*span[0])
     axes.set_ylim(*span[1])
     axes.set_xlabel("walking speed [m/s]")
     axes.set_ylabel("cadence [steps/min]")
     axes.set_title("E(speed, cadence)", pad=14)
     if axes.get_legend_handles_labels()[0]:
-        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16))
 
 
 def _fill(axes: Axes, found: Landscape, x: Array, y: Array) -> Any:

@@ -26,6 +26,9 @@ SAMPLES = 201
 NEIGHBOURS = 60
 """Cases from which E at a point is interpolated."""
 
+ALIKE = 0.005
+"""Share of E by which two gaits may differ and be alike: what their meshes leave open."""
+
 SPEED_STEP = 0.02
 """Between the speeds at which the valley is looked for [m/s]."""
 
@@ -78,9 +81,12 @@ def landscape(dataset: xr.Dataset) -> Landscape:
     energy = flat["energy_per_metre"].to_numpy()
     walks = {TIME, LENGTH} <= set(names)
     triangles = _triangles(x, y, accepted)
-    valley = np.zeros((0, 4))
+    valley, people, plain = np.zeros((0, 6)), np.zeros((0, 3)), np.zeros((0, 3))
+    legs = float(dataset.attrs["leg_length_m"])
     if walks:
         valley = _valley(columns[LENGTH], columns[TIME], energy, triangles)
+        speed = 2 * columns[LENGTH] / columns[TIME]
+        people, plain = _people(speed, legs), _people(speed, None)
     return Landscape(
         x=x,
         y=y,
@@ -92,8 +98,10 @@ def landscape(dataset: xr.Dataset) -> Landscape:
         speed=2 * columns[LENGTH] / columns[TIME] if walks else None,
         cadence=120 / columns[TIME] if walks else None,
         valley=valley,
-        people=_people(2 * columns[LENGTH] / columns[TIME]) if walks else np.zeros((0, 3)),
-        people_source=SOURCE,
+        people=people,
+        people_name=f"people scaled to legs of {legs:.2f} m ± SD",
+        plain=plain,
+        plain_name=f"the same people as they are ({SOURCE})",
     )
 
 
@@ -138,7 +146,7 @@ def _valley(length: Array, time: Array, energy: Array, triangles: NDArray[np.int
     from scipy.interpolate import RBFInterpolator
 
     if not len(triangles):
-        return np.zeros((0, 4))
+        return np.zeros((0, 6))
     inside = np.unique(triangles)
     unit = np.array([np.ptp(length[inside]), np.ptp(time[inside])])
     surface = RBFInterpolator(
@@ -164,8 +172,16 @@ def _valley(length: Array, time: Array, energy: Array, triangles: NDArray[np.int
             bend = e[k - 1] - 2 * e[k] + e[k + 1]
             shift = 0.5 * (e[k - 1] - e[k + 1]) / bend if bend > 0 else 0.0
             best = steps[k] + shift * (steps[1] - steps[0])
-            found.append((speed, best, 2 * best / speed, e[k]))
-    return np.array(found).reshape(-1, 4)
+            alike = steps[_around(k, e <= (1 + ALIKE) * e[k])]
+            found.append((speed, best, 2 * best / speed, e[k], alike[0], alike[-1]))
+    return np.array(found).reshape(-1, 6)
+
+
+def _around(k: int, kept: NDArray[np.bool_]) -> slice:
+    """The run of kept entries around one of them."""
+    lost = np.flatnonzero(~kept)
+    before, after = lost[lost < k], lost[lost > k]
+    return slice(int(before[-1]) + 1 if len(before) else 0, int(after[0]) if len(after) else None)
 
 
 def _covering(length: Array, time: Array, triangles: NDArray[np.int_]) -> Any:
@@ -176,9 +192,9 @@ def _covering(length: Array, time: Array, triangles: NDArray[np.int_]) -> Any:
     return lambda steps, times: np.asarray(finder(steps, times)) >= 0
 
 
-def _people(speeds: Array) -> Array:
+def _people(speeds: Array, legs: float | None) -> Array:
     at = np.arange(speeds.min(), speeds.max(), SPEED_STEP)
-    steps = steps_of_people(at)
+    steps = steps_of_people(at, legs)
     known = np.isfinite(steps.cadence)
     rows: Array = np.stack([at, steps.cadence, steps.cadence_sd], axis=1)
     return rows[known]
@@ -218,7 +234,9 @@ def payload(found: Landscape, dataset: xr.Dataset) -> dict[str, Any]:
         "cadence": None if found.cadence is None else _list(found.cadence),
         "valley": [_list(row) for row in found.valley],
         "people": [_list(row) for row in found.people],
-        "people_source": found.people_source,
+        "people_name": found.people_name,
+        "plain": [_list(row) for row in found.plain],
+        "plain_name": found.plain_name,
         "cases": cases,
     }
 

@@ -107,6 +107,7 @@ def collect(folder: str | Path, name: str | None = None) -> xr.Dataset:
         "title": definition["title"],
         "sweep": definition["name"],
         "fields": json.dumps(definition["fields"]),
+        "leg_length_m": definition["leg_length_m"],
     }
     return xr.Dataset(data, coords, about)
 

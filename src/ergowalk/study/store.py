@@ -23,6 +23,7 @@ from typing import Any
 from ergowalk.errors import OutputError, SweepError
 from ergowalk.study.cases import Case, digest_of_table, table_of
 from ergowalk.study.definition import Sweep
+from ergowalk.study.people import leg_length
 from ergowalk.study.plan import is_number
 
 INDEX = "index.parquet"
@@ -262,6 +263,7 @@ def _definition(sweep: Sweep, cases: Sequence[Case]) -> dict[str, Any]:
     return {
         "title": sweep.name,
         "fields": list(sweep.fields),
+        "leg_length_m": leg_length(sweep.base.body),
         "grid": grid,
         "cases": [{"key": c.key, "values": c.values, "refused": c.refused} for c in cases],
     }

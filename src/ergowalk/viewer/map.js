@@ -30,7 +30,10 @@ function ergowalkMap(root, map, gaits, frame) {
     frameOf(own, place);
     if (map.speed) own.speeds ? people(place) : isolines(place);
     if (map.valley.length) {
-      const points = map.valley.map(([v, l, t]) => (own.speeds ? [v, 120 / t] : [t, l]));
+      const at = (v, l) => (own.speeds ? [v, (60 * v) / l] : [(2 * l) / v, l]);
+      const around = [...map.valley.map((r) => at(r[0], r[4])), ...map.valley.map((r) => at(r[0], r[5])).reverse()];
+      chart.append(shape("path", { class: "valley-band", d: path(around, place) + "Z" }));
+      const points = map.valley.map(([v, l]) => at(v, l));
       chart.append(shape("path", { class: "valley-line", d: path(points, place) }));
     }
     map.cases.forEach((_, i) => own.y[i] !== null && disc(own, place, i));
@@ -92,7 +95,9 @@ function ergowalkMap(root, map, gaits, frame) {
   }
 
   function people(place) {
-    const inside = map.people.filter(([v, c]) => v > place.x0 && v < place.x1 && c > place.y0 && c < place.y1);
+    const within = ([v, c]) => v > place.x0 && v < place.x1 && c > place.y0 && c < place.y1;
+    const plain = map.plain.filter(within), inside = map.people.filter(within);
+    if (plain.length) chart.append(shape("path", { class: "people-line plain", d: path(plain, place) }));
     if (!inside.length) return;
     const clip = (c) => Math.max(place.y0, Math.min(place.y1, c));
     const upper = inside.map(([v, c, sd]) => [v, clip(c + sd)]);
@@ -164,7 +169,9 @@ function ergowalkMap(root, map, gaits, frame) {
     find("key-cross").hidden = map.accepted.every((a) => a);
     find("key-valley").hidden = !map.valley.length;
     find("key-people").hidden = !map.people.length;
-    find("people-name").textContent = `people, mean ± SD (${map.people_source})`;
+    find("people-name").textContent = map.people_name;
+    find("key-plain").hidden = !map.plain.length;
+    find("plain-name").textContent = map.plain_name;
   }
 
   function colour(energy) {

@@ -161,6 +161,8 @@ def patience(seconds: int) -> Iterator[None]:
 
 def asked_by_fork(path: Path) -> dict[str, Any]:
     """As the reader asks ezc3d, in a fork of this process: a new interpreter takes too long."""
+    import ezc3d  # noqa: F401 - here, so that no fork has to
+
     target = path.with_suffix(".npz")
     target.unlink(missing_ok=True)
     child = os.fork()

@@ -136,7 +136,7 @@ def measure(
     static : Recording, optional
         A trial in which the person stands still with all markers.
     body : Body, optional
-        The person's body, where it is known; lengths are then not taken from the markers.
+        The person's body with equal legs, where it is known.
 
     Raises
     ------
@@ -148,8 +148,11 @@ def measure(
     loads, notes = foot_loads(trial, choices)
     events, told = _events(trial, loads, choices)
     flat = {side: flat_frames(trial, events[side]) for side in trial.legs}
-    _check_stances(trial, events, flat)
-    lengths = measured_lengths(trial, [foot_shape(trial.legs[s], flat[s]) for s in trial.legs])
+    sides = [side for side in trial.legs if flat[side].any()]
+    if not sides:
+        raise _no_stride(trial, events, "no leg has a whole stance")
+    told += [f"{s} leg: left out, no whole stance" for s in trial.legs if s not in sides]
+    lengths = measured_lengths(trial, [foot_shape(trial.legs[s], flat[s]) for s in sides])
     if body is None:
         mass, how = _mass(trial, loads, events, choices)
         body = person_body(mass, lengths, choices)
@@ -158,10 +161,9 @@ def measure(
     if belt:
         notes.append(f"the floor moves at {belt:.2f} m/s under the flat foot: a treadmill")
     legs = {}
-    for i, side in enumerate(trial.legs):
-        parameters = body.leg(i)
+    for side in sides:
         found = joint_loads(
-            trial.legs[side], parameters, loads[side].load, trial.rate, body.gravity_m_s2
+            trial.legs[side], body.leg(0), loads[side].load, trial.rate, body.gravity_m_s2
         )
         angles = leg_angles(trial, side, flat[side])
         legs[side] = LegRecord(side, events[side], angles, loads[side], found)
@@ -183,14 +185,6 @@ def _events(
             events[side], text = merged(by_feet, loads[side].events())
             told.append(f"{side} leg: {text}")
     return events, told
-
-
-def _check_stances(
-    trial: Trial, events: Mapping[str, Events], flat: Mapping[str, NDArray[np.bool_]]
-) -> None:
-    for side in trial.legs:
-        if not flat[side].any():
-            raise _no_stride(trial, events, f"the {side} leg has no whole stance")
 
 
 def _mass(

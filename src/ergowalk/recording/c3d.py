@@ -22,7 +22,7 @@ from ergowalk.recording.text import read_bytes
 
 Array = NDArray[np.float64]
 
-PATIENCE = 60.0
+PATIENCE = 30.0
 """Longest time that the reading may take [s]."""
 
 FAINTEST = 1e-9

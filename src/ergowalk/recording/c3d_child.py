@@ -15,7 +15,7 @@ import numpy as np
 MEMORY = 4 << 30
 """Most address space [bytes]."""
 
-SECONDS = 60
+SECONDS = 25
 """Most processor time [s]."""
 
 

@@ -6,6 +6,7 @@ Layout of the header block and of the first bytes of the parameter section as in
 
 from __future__ import annotations
 
+import math
 import struct
 from dataclasses import dataclass
 
@@ -53,6 +54,7 @@ def check_header(content: bytes, file: str) -> C3DHeader:
     end_of_parameters = start + BLOCK * max(1, content[start + 2])
     if end_of_parameters > len(content):
         raise _truncated(end_of_parameters, len(content), file)
+    _check_parameters(content, start, end_of_parameters, file)
     _check_counts(header, file)
     frames = header.last_frame - header.first_frame + 1
     if header.last_frame == 0xFFFF:  # the header cannot count further: by the bytes that are there
@@ -79,6 +81,51 @@ def _header(content: bytes, start: int) -> C3DHeader:
         last_frame=words[3],
         data_block=words[7],
         width=4 if negative else 2,
+    )
+
+
+def _check_parameters(content: bytes, start: int, end: int, file: str) -> None:
+    """Walk through the parameters: each leads forward to the next, and holds what it claims.
+
+    A reader that trusts them may otherwise walk in a circle.
+    """
+    order = "<" if content[start + 3] != 86 else ">"
+    at = start + 4
+    while at + 2 <= end:
+        length, group = struct.unpack("bb", content[at : at + 2])
+        if length == 0:
+            return
+        after_name = at + 2 + abs(length)
+        if group == 0 or after_name + 3 > end:
+            raise _lost_way(at, file)
+        step = struct.unpack(order + "h", content[after_name : after_name + 2])[0]
+        last = step == 0
+        after = end if last else after_name + step
+        if step < 0 or after > end or (group > 0 and not _holds(content, after_name + 2, after)):
+            raise _lost_way(at, file)
+        if last:
+            return
+        at = after
+
+
+def _holds(content: bytes, at: int, end: int) -> bool:
+    """Whether a parameter's values end before ``end``."""
+    kind, dimensions = struct.unpack("bB", content[at : at + 2])
+    if kind not in _SIZES or dimensions > 7 or at + 2 + dimensions > end:
+        return False
+    values = math.prod(content[at + 2 : at + 2 + dimensions])
+    return at + 2 + dimensions + _SIZES[kind] * values <= end
+
+
+_SIZES = {-1: 1, 1: 1, 2: 2, 4: 4}
+"""Bytes of a character, a byte, an integer and a float."""
+
+
+def _lost_way(at: int, file: str) -> RecordingError:
+    return RecordingError(
+        f"is damaged: the parameter at byte {at} does not lead to the next",
+        "copy or export the trial again",
+        file=file,
     )
 
 

@@ -229,7 +229,9 @@ def _add_fit(commands: Any) -> None:
         "--height", type=float, metavar="M", help="body height (default: by the legs)"
     )
     parser.add_argument(
-        "--sex", choices=("male", "female"), default="male", help="for tables that know two"
+        "--sex",
+        choices=("male", "female"),
+        help="de Leva's table of segments instead of Dempster's",
     )
     parser.add_argument(
         "--cutoff",

@@ -31,8 +31,8 @@ class Choices(Value):
     height_m: PositiveFloat | None = Field(
         default=None, description="height of the body; none: from the length of the legs"
     )
-    sex: Literal["male", "female"] = Field(
-        default="male", description="for anthropometric tables that know two"
+    sex: Literal["male", "female"] | None = Field(
+        default=None, description="de Leva's table of segments; Dempster's unless said"
     )
     cutoff_hz: FiniteFloat = Field(
         default=6.0, ge=2.0, le=50.0, description="cut-off of the low-pass filter of markers, Hz"

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ergowalk.anthropometry import segments
 from ergowalk.body import LegParameters
 from ergowalk.measured.filtering import differences
 from ergowalk.measured.kinematics import hanging
 from ergowalk.measured.loads import CONTACT, pressure
-from ergowalk.measured.person import DEMPSTER
 
 Array = NDArray[np.float64]
 
@@ -53,11 +53,11 @@ def joint_loads(
     """
     point = {role: values[:, :2] for role, values in leg.items()}
     p = parameters
-    foot = DEMPSTER["foot"]
+    foot = segments("dempster", "male")["foot"]
     foot_length = float(np.linalg.norm(point["ankle"] - point["metatarsal"], axis=1).mean())
-    segments = (
+    parts = (
         ("ankle", "metatarsal", foot.com, p.foot_mass,
-         p.foot_mass * (foot.gyration**2 - foot.com**2) * foot_length**2),
+         p.foot_mass * foot.gyration**2 * foot_length**2),
         ("knee", "ankle", p.shank_com / p.shank_length, p.shank_mass,
          p.shank_inertia - p.shank_mass * p.shank_com**2),
         ("hip", "knee", p.thigh_com / p.thigh_length, p.thigh_mass,
@@ -66,7 +66,7 @@ def joint_loads(
     below = _Load(load[:, :2], load[:, 2])
     moments: dict[str, Array] = {"metatarsal": _toe_moment(point["metatarsal"], load)}
     forces: dict[str, Array] = {}
-    for joint, distal, share, mass, inertia in segments:
+    for joint, distal, share, mass, inertia in parts:
         upper, lower = point[joint], point[distal]
         needed = _needed(upper, lower, share, mass, max(inertia, 0.0), rate, gravity)
         above = _Load(needed.force - below.force, needed.moment - below.moment)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ergowalk.anthropometry import MASSES, length_fractions
 from ergowalk.body import Body
 from ergowalk.errors import InputError, RecordingError
 from ergowalk.measured.choices import Choices
@@ -19,34 +19,9 @@ from ergowalk.measured.trial import Trial
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Fractions:
-    """A segment as fractions of body mass and of its length, the radius of gyration about its
-    proximal joint."""
-
-    mass: float
-    com: float
-    gyration: float
-
-
-DEMPSTER = {
-    "thigh": Fractions(0.100, 0.433, 0.540),
-    "shank": Fractions(0.0465, 0.433, 0.528),
-    "foot": Fractions(0.0145, 0.500, 0.690),
-    "trunk": Fractions(0.678, 0.626, 0.798),
-}
-"""Dempster's fractions as in Winter (2009), table 4.1; the trunk is head, arms and trunk, its
-length hip to shoulder, and that of the foot ankle to metatarsals."""
-
-HIP_HEIGHT, ANKLE_HEIGHT, HIP_TO_SHOULDER = 0.530, 0.039, 0.288
-"""Fractions of body height (Drillis & Contini 1966)."""
-
 TOES = 0.44
 """Metatarsals to toe tip over heel to metatarsals, where no marker shows it: as in the measured
 subject of Winter (2009)."""
-
-LIGHTEST, HEAVIEST = 15.0, 300.0
-"""Range of the mass of a person [kg]."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +36,7 @@ class Lengths:
     @property
     def height(self) -> float:
         """Height of the body [m] by that of the hip."""
-        return (self.thigh + self.shank + self.foot.ankle_height) / HIP_HEIGHT
+        return (self.thigh + self.shank + self.foot.ankle_height) / length_fractions()["hip_height"]
 
 
 def measured_lengths(trial: Trial, feet: Sequence[FootShape]) -> Lengths:
@@ -96,44 +71,25 @@ def person_body(mass: float, lengths: Lengths, choices: Choices) -> Body:
     RecordingError
         If the mass or the foot is nobody's.
     """
-    if not LIGHTEST <= mass <= HEAVIEST:
+    lightest, heaviest = MASSES
+    if not lightest <= mass <= heaviest:
         raise RecordingError(
-            f"must lie between {LIGHTEST:g} and {HEAVIEST:g} kg",
+            f"must lie between {lightest:g} and {heaviest:g} kg",
             "give --mass in kg, or mend the forces",
             field="mass",
             value=round(mass, 2),
         )
+    measured = {"thigh_length_m": lengths.thigh, "shank_length_m": lengths.shank}
+    if lengths.trunk is not None:
+        measured["hip_to_shoulder_m"] = lengths.trunk
     try:
-        return Body(**{**_segments(mass, lengths, choices), **_foot(lengths.foot)})
+        height = choices.height_m or lengths.height
+        body = Body.from_height_mass(height, mass, choices.sex, None, **measured)
+        return Body(**{**dict(body), **_foot(lengths.foot)})
     except InputError as error:
         raise RecordingError(
             f"the measured lengths make no body ({error})", "check the map of the markers"
         ) from None
-
-
-def _segments(mass: float, lengths: Lengths, choices: Choices) -> dict[str, Any]:
-    """Masses, centres and inertias of trunk, thigh, shank and foot.
-
-    From :class:`ergowalk.body.Body` where it knows anthropometry, else by :data:`DEMPSTER`.
-    """
-    known = getattr(Body, "from_height_mass", None)
-    if known is not None:
-        body: Body = known(
-            choices.height_m or lengths.height,
-            mass,
-            sex=choices.sex,
-            thigh_length_m=lengths.thigh,
-            shank_length_m=lengths.shank,
-        )
-        return {name: getattr(body, name) for name in type(body).model_fields}
-    trunk = lengths.trunk or HIP_TO_SHOULDER * (choices.height_m or lengths.height)
-    found: dict[str, Any] = {"foot_mass_kg": DEMPSTER["foot"].mass * mass}
-    for name, length in (("trunk", trunk), ("thigh", lengths.thigh), ("shank", lengths.shank)):
-        part = DEMPSTER[name]
-        found[f"{name}_mass_kg"] = part.mass * mass
-        found[f"{name}_com_m"] = part.com * length
-        found[f"{name}_inertia_kgm2"] = part.mass * mass * (part.gyration * length) ** 2
-    return {**found, "thigh_length_m": lengths.thigh, "shank_length_m": lengths.shank}
 
 
 def _foot(foot: FootShape) -> dict[str, float]:

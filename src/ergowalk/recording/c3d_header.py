@@ -114,7 +114,7 @@ def _holds(content: bytes, at: int, end: int) -> bool:
     if kind not in _SIZES or dimensions > 7 or at + 2 + dimensions > end:
         return False
     values = math.prod(content[at + 2 : at + 2 + dimensions])
-    return at + 2 + dimensions + _SIZES[kind] * values <= end
+    return bool(at + 2 + dimensions + _SIZES[kind] * values <= end)
 
 
 _SIZES = {-1: 1, 1: 1, 2: 2, 4: 4}

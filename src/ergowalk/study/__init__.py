@@ -10,7 +10,8 @@ if TYPE_CHECKING:
     from ergowalk.study.people import StepsOfPeople, steps_of_people
     from ergowalk.study.preference import ENERGY, Criterion, Preferred, preferred
     from ergowalk.study.results import collect
-    from ergowalk.study.running import Tally, sweep
+    from ergowalk.study.running import sweep
+    from ergowalk.study.tally import Tally
 
 _HOMES = {
     "ENERGY": "preference",
@@ -18,7 +19,7 @@ _HOMES = {
     "Preferred": "preference",
     "StepsOfPeople": "people",
     "Sweep": "definition",
-    "Tally": "running",
+    "Tally": "tally",
     "collect": "results",
     "preferred": "preference",
     "read_sweep": "definition",

@@ -38,6 +38,8 @@ class Case:
         None where the values contradict each other.
     refused : str
         Why there is no problem.
+    table : str
+        Digest of the table of human data that the problem names; empty if it is built in or lost.
     """
 
     index: int
@@ -45,6 +47,7 @@ class Case:
     key: str
     problem: GaitProblem | None
     refused: str = ""
+    table: str = ""
 
 
 def cases_of(sweep: Sweep, solver: str = DEFAULT_SOLVER) -> tuple[Case, ...]:
@@ -75,7 +78,8 @@ def cases_of(sweep: Sweep, solver: str = DEFAULT_SOLVER) -> tuple[Case, ...]:
                 field=f"case {index + 1}",
                 value=values,
             )
-        found[key] = Case(index, values, key, problem, refused)
+        table = "" if problem is None else digest_of_table(problem)
+        found[key] = Case(index, values, key, problem, refused, table)
     if first_error is not None and all(case.problem is None for case in found.values()):
         raise first_error
     return tuple(found.values())

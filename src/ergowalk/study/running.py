@@ -9,16 +9,16 @@ import queue
 import time
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ergowalk.errors import InputError, SweepError
 from ergowalk.study.cases import DEFAULT_SOLVER, Case, cases_of
 from ergowalk.study.cluster import cluster_client, dashboard, greeted, needed, slots
-from ergowalk.study.definition import Sweep
+from ergowalk.study.definition import SearchOptions, Sweep
 from ergowalk.study.plan import Step, planned
 from ergowalk.study.store import Record, Store
+from ergowalk.study.tally import Tally
 from ergowalk.study.worker import run_case
 
 if TYPE_CHECKING:
@@ -35,48 +35,6 @@ TICK_S = 0.5
 
 INDEX_EVERY_S = 20.0
 """How often the index on disk is brought up to date while cases run."""
-
-
-@dataclass(frozen=True)
-class Tally:
-    """Where a sweep stands.
-
-    Attributes
-    ----------
-    total, done, accepted, failed, running : int
-        Cases: of the sweep, with a record, with an accepted gait, without a gait, under way.
-    fresh : int
-        Cases that this run has done itself.
-    elapsed : float
-        Seconds since this run began.
-    workers : int
-        Threads of the cluster, each of which takes one case.
-    dashboard : str
-        Address of Dask's own view of the cluster.
-    last : str
-        Key of the last case that ended, if one has, and its status.
-    """
-
-    total: int
-    done: int
-    accepted: int
-    failed: int
-    running: int
-    fresh: int
-    elapsed: float
-    workers: int
-    dashboard: str
-    last: str = ""
-
-    @property
-    def per_minute(self) -> float:
-        """Cases a minute in this run."""
-        return 60 * self.fresh / self.elapsed if self.elapsed > 0 else 0.0
-
-    @property
-    def left_s(self) -> float | None:
-        """Seconds that the rest will take at this rate; None before the first case."""
-        return 60 * (self.total - self.done) / self.per_minute if self.fresh else None
 
 
 Watch = Callable[[Tally], None]
@@ -139,7 +97,8 @@ def sweep(
         if case.problem is None and store.record(case.key) is None:
             store.write_record(_refused(case))
     again = FAILED if retry else ()
-    run = _Run(definition, store, planned(definition, cases), again, solver, progress)
+    first = store.keep_start(definition.start)
+    run = _Run(store, planned(definition, cases), definition.solve, first, again, solver, progress)
     try:
         if run.missing:
             with cluster_client(workers, scheduler, len(run.missing)) as client:
@@ -155,14 +114,15 @@ class _Run:
 
     def __init__(
         self,
-        definition: Sweep,
         store: Store,
         steps: tuple[Step, ...],
+        options: SearchOptions,
+        start: Path | None,
         retried: tuple[str, ...],
         solver: str,
         progress: Watch | None,
     ) -> None:
-        self.definition, self.store, self.retried = definition, store, retried
+        self.store, self.options, self.start, self.retried = store, options, start, retried
         self.solver, self.progress = solver, progress
         self.steps = {step.case.key: step for step in steps}
         self.keys = list(self.steps)
@@ -260,9 +220,9 @@ class _Run:
         }
 
     def _ticket(self, key: str) -> dict[str, Any]:
-        case, options = self.steps[key].case, self.definition.solve
+        case, options = self.steps[key].case, self.options
         before = self._begin_at(key)
-        start = self.store.gait(before) if before else self.definition.start
+        start = self.store.gait(before) if before else self.start
         return {
             "folder": str(self.store.folder),
             "key": key,

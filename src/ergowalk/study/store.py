@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from ergowalk.errors import OutputError, SweepError
-from ergowalk.study.cases import Case, digest_of_table, table_of
+from ergowalk.study.cases import Case, table_of
 from ergowalk.study.definition import Sweep
 from ergowalk.study.people import leg_length
 from ergowalk.study.plan import is_number
@@ -115,15 +115,39 @@ class Store:
         self._clear_drafts()
         return name
 
+    def keep_start(self, path: Path | None) -> Path | None:
+        """A copy of the gait with which a sweep begins, where all workers see it.
+
+        Raises
+        ------
+        GaitFileError
+            If it is no gait that can be read.
+        OutputError
+            If the copy cannot be written.
+        """
+        if path is None:
+            return None
+        from ergowalk.solution import Solution
+
+        Solution.load(path)
+        content = path.read_bytes()
+        target = self.folder / "starts" / f"{hashlib.sha256(content).hexdigest()[:16]}.nc"
+        try:
+            target.parent.mkdir(exist_ok=True)
+        except OSError as error:
+            raise _unwritable(target, error) from None
+        if not target.exists():
+            write_whole(target, content)
+        return target
+
     def problem_text(self, case: Case) -> str:
         """The problem of a case as TOML that is understood beside its gait."""
         from ergowalk.problem.files import problem_to_toml
 
         assert case.problem is not None
         problem = case.problem
-        digest = digest_of_table(problem)
-        if digest:
-            source = f"../../tables/{digest[:16]}.csv"
+        if case.table:
+            source = f"../../tables/{case.table[:16]}.csv"
             problem = problem.replace(corridors=problem.corridors.replace(source=source))
         return problem_to_toml(problem)
 
@@ -215,9 +239,9 @@ class Store:
             )
 
     def _copy_table(self, case: Case) -> None:
-        if case.problem is None or not (digest := digest_of_table(case.problem)):
+        if case.problem is None or not case.table:
             return
-        target = self.folder / "tables" / f"{digest[:16]}.csv"
+        target = self.folder / "tables" / f"{case.table[:16]}.csv"
         if not target.exists():
             try:
                 target.parent.mkdir(exist_ok=True)

@@ -114,8 +114,8 @@ class Scene:
             label = wrapped(walker.payload["label"], self.text, room)
             found += [_Line(text, self.text, "ink") for text in label]
             found[-len(label)] = _Line(label[0], self.text, "ink", walker.own, mark)
-            if walker.payload["limits"]:
-                limits = wrapped(f"with {walker.payload['limits']}", 0.8 * self.text, room)
+            if under := walker.payload.get("limits"):
+                limits = wrapped(f"with {under}", 0.8 * self.text, room)
                 found += [_Line(text, 0.8 * self.text, "muted") for text in limits]
         if self.options.speed != 1:
             found.append(_Line(f"speed {self.options.speed:g}", 0.8 * self.text, "muted"))

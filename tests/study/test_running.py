@@ -159,6 +159,7 @@ def test_workers_and_scheduler_exclude_each_other(tmp_path: Path) -> None:
         sweep(small(), tmp_path / "out", workers=2, scheduler="tcp://127.0.0.1:9")
     with pytest.raises(SweepError, match="workers = 0: must be 1 or more"):
         sweep(small(), tmp_path / "out", workers=0)
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_solver_that_cannot_be_loaded_is_one_line(here: str, tmp_path: Path) -> None:

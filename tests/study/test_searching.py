@@ -11,7 +11,7 @@ from ergowalk.errors import GaitFileError
 from ergowalk.problem import GaitProblem, preset
 from ergowalk.problem.files import problem_to_toml
 from ergowalk.solution import Solution
-from ergowalk.study import Sweep
+from ergowalk.study import Sweep, sweep
 from ergowalk.study.cases import cases_of
 from ergowalk.study.searching import COLD, searched
 from ergowalk.study.store import Store
@@ -99,21 +99,20 @@ def test_the_solver_says_so_in_these_words(tmp_path: Path) -> None:
     assert COLD in Path(collocation.__file__).read_text("utf-8")
 
 
-def test_a_start_that_is_no_gait_is_refused_before_anything_is_solved(tmp_path: Path) -> None:
-    sweep = Sweep(base=preset("berbyuk2002"), grid={"step_length_m": [0.7]})
-    store = Store(tmp_path / "out")
-    store.prepare(sweep, cases_of(sweep))
-    with pytest.raises(GaitFileError, match="none.nc: no such file; give the path of a gait.nc"):
-        store.keep_start(tmp_path / "none.nc")
-    (tmp_path / "text.nc").write_text("no gait")
-    with pytest.raises(GaitFileError, match="text.nc: is not a NetCDF file"):
-        store.keep_start(tmp_path / "text.nc")
+def test_a_start_that_is_no_gait_is_refused_before_there_is_a_folder(tmp_path: Path) -> None:
+    pytest.importorskip("distributed", reason="dask is not installed")
+    definition = Sweep(base=preset("berbyuk2002"), grid={"step_length_m": [0.7]})
+    for name, match in (("none.nc", "no such file; give the path"), ("text.nc", "is not a NetCDF")):
+        (tmp_path / "text.nc").write_text("no gait")
+        with pytest.raises(GaitFileError, match=f"{name}: {match}"):
+            sweep(definition.replace(start=tmp_path / name), tmp_path / "out")
+    assert not (tmp_path / "out").exists()
 
 
 def test_the_start_is_kept_where_workers_see_it(tmp_path: Path, paper_gait_file: Path) -> None:
-    sweep = Sweep(base=preset("berbyuk2002"), grid={"step_length_m": [0.7]})
+    definition = Sweep(base=preset("berbyuk2002"), grid={"step_length_m": [0.7]})
     store = Store(tmp_path / "out")
-    store.prepare(sweep, cases_of(sweep))
+    store.prepare(definition, cases_of(definition))
     kept = store.keep_start(paper_gait_file)
     assert kept is not None
     assert kept.parent == tmp_path / "out" / "starts"
@@ -131,10 +130,10 @@ def test_a_table_of_human_data_goes_with_the_sweep(tmp_path: Path) -> None:
     (tmp_path / "mine.csv").write_bytes(content)
     base = preset("berbyuk2002").replace(folder=tmp_path)
     base = base.replace(corridors=base.corridors.replace(source="mine.csv"))
-    sweep = Sweep(base=base, grid={"step_length_m": [0.7]})
-    (case,) = cases_of(sweep)
+    definition = Sweep(base=base, grid={"step_length_m": [0.7]})
+    (case,) = cases_of(definition)
     store = Store(tmp_path / "out")
-    store.prepare(sweep, [case])
+    store.prepare(definition, [case])
     (tmp_path / "mine.csv").unlink()
     text = store.problem_text(case)
     assert problem_from_toml(text, folder=store.gait(case.key).parent).human().curves

@@ -27,16 +27,13 @@ def cluster_client(workers: int | None, scheduler: str | None, most: int) -> Ite
     Raises
     ------
     SweepError
-        If Dask is not installed, the number of workers is no number of workers, or there is no
-        scheduler.
+        If Dask is not installed, or there is no scheduler.
     """
     distributed = needed()
     if scheduler is not None:
         with _connected(distributed, scheduler) as client:
             yield client
         return
-    if workers is not None and workers < 1:
-        raise SweepError("must be 1 or more", "give a whole number", field="workers", value=workers)
     count = min(most, workers or _processors())
     import dask
 

@@ -88,8 +88,7 @@ def sweep(
     from ergowalk.study.results import collect
 
     needed()
-    if workers is not None and scheduler is not None:
-        raise SweepError("have their own workers", "leave out one", field="workers and scheduler")
+    _check(definition, workers, scheduler)
     cases = cases_of(definition, solver)
     store = Store(Path(folder).absolute())
     name = store.prepare(definition, cases)
@@ -107,6 +106,18 @@ def sweep(
     finally:
         store.write_index()
     return collect(folder, name)
+
+
+def _check(definition: Sweep, workers: int | None, scheduler: str | None) -> None:
+    """Refuse what cannot be used, before there is a folder."""
+    if workers is not None and scheduler is not None:
+        raise SweepError("have their own workers", "leave out one", field="workers and scheduler")
+    if workers is not None and workers < 1:
+        raise SweepError("must be 1 or more", "give a whole number", field="workers", value=workers)
+    if definition.start is not None:
+        from ergowalk.solution import Solution
+
+        Solution.load(definition.start)
 
 
 class _Run:

@@ -120,16 +120,11 @@ class Store:
 
         Raises
         ------
-        GaitFileError
-            If it is no gait that can be read.
         OutputError
             If the copy cannot be written.
         """
         if path is None:
             return None
-        from ergowalk.solution import Solution
-
-        Solution.load(path)
         content = path.read_bytes()
         target = self.folder / "starts" / f"{hashlib.sha256(content).hexdigest()[:16]}.nc"
         try:

@@ -31,6 +31,8 @@ from ergowalk.solving.stages import (
     Start,
 )
 from ergowalk.solving.start import StartingGait
+from ergowalk.solving.verdict import conflict
+from ergowalk.solving.verdict import moved as far
 from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.mesh import cut, finer
 from ergowalk.transcription.perturbation import Perturbation
@@ -195,7 +197,7 @@ def _refine(coarse: Candidate) -> Gait:
         check = Candidate(search, search.refined(final.result, mesh, 1.0))
         checked, confirmed = _dense(check, history)
         change = confirmed / reported - 1
-        moved = _moved(history[-2], history[-1])
+        moved = far(history[-2], history[-1])
         converged = check.result.minimum.converged
         if not converged or moved <= MESH_TOLERANCE:
             break
@@ -221,13 +223,6 @@ def _refine(coarse: Candidate) -> Gait:
         change = history[-1]["objective_per_metre"] / value - 1
         status += f"; objective {value:.2f} J/m, {100 * change:+.2f} %"
     return Gait(final, dataset, history, status, settled)
-
-
-def _moved(reported: dict[str, Any], check: dict[str, Any]) -> float:
-    """By how much E, and the objective where it is another, differ on two meshes."""
-    names = ("energy_per_metre", "objective_per_metre")
-    pairs = [(float(check[n]), float(reported[n])) for n in names if n in reported]
-    return max(abs(new / old - 1) for new, old in pairs)
 
 
 def _show_impulses(coarse: Candidate) -> Gait:
@@ -280,23 +275,10 @@ def _sharpness(dataset: xr.Dataset, search: OrderSearch) -> dict[str, float]:
 
 def _failed(candidate: Candidate, history: list[dict[str, Any]], where: str) -> Gait:
     dataset, _ = _dense(candidate, history, final=True)
-    status = f"not converged {where}: {candidate.result.minimum.message}{_conflict(candidate)}"
+    status = (
+        f"not converged {where}: {candidate.result.minimum.message}{conflict(candidate.result)}"
+    )
     return Gait(candidate, dataset, history, status, settled=False)
-
-
-CONFLICT, MOST_NAMED = 1e-4, 4
-"""Violation (scaled) from which a constraint is in conflict, and how many of them are named."""
-
-
-def _conflict(candidate: Candidate) -> str:
-    """Which constraints no motion near the last one could satisfy together, worst first."""
-    result = candidate.result
-    violations = result.collocation.programme.violations(result.minimum.x)
-    worst = sorted((v, name) for name, v in violations.items() if v > CONFLICT)[::-1]
-    if not worst or result.minimum.violation <= CONFLICT:
-        return ""
-    named = ", ".join(name for _, name in worst[:MOST_NAMED])
-    return f"; in conflict: {named}" + (" and others" if len(worst) > MOST_NAMED else "")
 
 
 def _finished(

@@ -11,8 +11,7 @@ from ergowalk.body import Body
 from ergowalk.corridors import SIGNALS, Signal
 from ergowalk.measured.strides import POINTS
 from ergowalk.measured.walk import MeasuredWalk
-from ergowalk.problem import GaitProblem
-from ergowalk.problem.gait_problem import Corridors, Limits, RhythmBounds
+from ergowalk.problem import Corridors, GaitProblem, Limits, RhythmBounds
 
 Array = NDArray[np.float64]
 

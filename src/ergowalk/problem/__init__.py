@@ -1,17 +1,11 @@
 """Problem A: givens, constraints (2)-(9), objective (10), physical limits, presets."""
 
 from ergowalk.problem.devices import Device, Devices
-from ergowalk.problem.gait_problem import (
-    JOINTS,
-    Corridors,
-    DoubleSupport,
-    GaitProblem,
-    JointBounds,
-    Limits,
-    RhythmBounds,
-)
+from ergowalk.problem.gait_problem import Corridors, DoubleSupport, GaitProblem, RhythmBounds
+from ergowalk.problem.limits import JointBounds, Limits
 from ergowalk.problem.objective import Objective
 from ergowalk.problem.presets import DEFAULT_PRESET, PRESETS, preset
+from ergowalk.quantities import JOINTS
 
 __all__ = [
     "DEFAULT_PRESET",

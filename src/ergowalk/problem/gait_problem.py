@@ -14,16 +14,12 @@ from ergowalk.corridors import ANGLES, Corridor, HumanGait, human_gait
 from ergowalk.errors import BodyError, CorridorError, ProblemError
 from ergowalk.gait.rhythm import PRINTED_RHYTHM, PhaseOrder, Rhythm
 from ergowalk.problem.devices import Device, Devices
+from ergowalk.problem.limits import Limits, Off
 from ergowalk.problem.objective import Objective
 from ergowalk.values import INPUT_ONLY, FiniteFloat, PositiveFloat, Value, invalid
 
-Off = Literal["off"]
-Bound = PositiveFloat | Off
 Width = PositiveFloat | Literal["same"] | Off
 Instant = FiniteFloat | tuple[FiniteFloat, FiniteFloat]
-
-JOINTS = ("hip", "knee", "ankle", "metatarsal")
-"""The four joints of a leg, in the order of (10)."""
 
 
 class DoubleSupport(StrEnum):
@@ -138,76 +134,6 @@ class RhythmBounds(Value):
 
 
 _RANGES = {"heel_end": (0.0, 0.5), "heel_off": (0.0, 0.5), "toe_off": (0.5, 1.0)}
-
-
-class JointBounds(Value):
-    """One bound per joint, or "off"."""
-
-    _error = ProblemError
-
-    hip: Bound = Field(default="off", description="bound at the hip, or 'off'")
-    knee: Bound = Field(default="off", description="bound at the knee, or 'off'")
-    ankle: Bound = Field(default="off", description="bound at the ankle, or 'off'")
-    metatarsal: Bound = Field(default="off", description="bound at the metatarsal joint, or 'off'")
-
-    def of(self, joint: str) -> float | None:
-        """The bound of a joint, None where it is off."""
-        value = getattr(self, joint)
-        return None if value == "off" else value
-
-
-class Limits(Value):
-    """Physical limits beyond the paper's constraints; each can be switched off.
-
-    As printed, Problem A has no smooth minimiser: work-optimal walking is impulsive, and with
-    finer meshes moments and reactions grow into spikes while E keeps falling. Only a bound or a
-    cost on the rate of the joint moments makes E converge.
-    """
-
-    _error = ProblemError
-
-    vertical_reaction_body_weights: Bound = Field(
-        default=1.3,
-        description="cap on each leg's vertical reaction in body weights, or 'off'; a person "
-        "walking at natural cadence peaks near 1.1",
-    )
-    friction_coefficient: Bound = Field(
-        default=0.6,
-        description="friction cone |R_x| <= mu R_y, or 'off'; dry floors give 0.5 to 0.8",
-    )
-    moment_rate_nm_per_kg_s: JointBounds = Field(
-        default=JointBounds(hip=25.0, knee=25.0, ankle=25.0),
-        description="bounds on the rate of the joint moments, N m/(kg s); muscles need time, "
-        "and Winter's mean moments peak near 17",
-    )
-    moment_nm_per_kg: JointBounds = Field(
-        default=JointBounds(), description="bounds on the joint moments, N m/kg: strength"
-    )
-
-    @property
-    def bounds_moment_rate(self) -> bool:
-        """Whether hip, knee and ankle have a bound that makes the problem well posed."""
-        return all(self.moment_rate_nm_per_kg_s.of(joint) is not None for joint in ANGLES)
-
-    def sentence(self) -> str:
-        """The limits in words, to stand beside every E."""
-        parts = []
-        if self.vertical_reaction_body_weights != "off":
-            parts.append(f"R_y <= {self.vertical_reaction_body_weights:g} body weights")
-        if self.friction_coefficient != "off":
-            parts.append(f"|R_x| <= {self.friction_coefficient:g} R_y")
-        parts += _joint_sentence("moment rate", self.moment_rate_nm_per_kg_s, "N m/(kg s)")
-        parts += _joint_sentence("moment", self.moment_nm_per_kg, "N m/kg")
-        return ", ".join(parts) or "no limits"
-
-
-def _joint_sentence(what: str, bounds: JointBounds, unit: str) -> list[str]:
-    by_value: dict[float, list[str]] = {}
-    for joint in JOINTS:
-        value = bounds.of(joint)
-        if value is not None:
-            by_value.setdefault(value, []).append(joint)
-    return [f"{what} <= {v:g} {unit} at {', '.join(j)}" for v, j in by_value.items()]
 
 
 class Corridors(Value):

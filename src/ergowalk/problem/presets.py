@@ -7,13 +7,9 @@ from dataclasses import dataclass
 
 from ergowalk.errors import ProblemError
 from ergowalk.gait.rhythm import PRINTED_RHYTHM
-from ergowalk.problem.gait_problem import (
-    Corridors,
-    GaitProblem,
-    JointBounds,
-    Limits,
-    RhythmBounds,
-)
+from ergowalk.problem.devices import Device, Devices
+from ergowalk.problem.gait_problem import Corridors, GaitProblem, RhythmBounds
+from ergowalk.problem.limits import JointBounds, Limits
 
 DEFAULT_PRESET = "berbyuk2002"
 
@@ -28,6 +24,15 @@ _PRINTED_RHYTHM = RhythmBounds(
     heel_off=PRINTED_RHYTHM.heel_off,
     toe_off=PRINTED_RHYTHM.toe_off,
 )
+
+
+_ANKLE_EXOSKELETON = Devices(
+    ankle=Device(kind="spring", stiffness_nm_per_rad=180.0, stiffness_below_nm_per_rad=0.0)
+)
+"""Collins, Wiggin and Sawicki, Nature 522 (2015), found least metabolic cost at 180 N m/rad. Their
+clutch is replaced by a spring that is slack below the neutral ankle."""
+
+_HIP_EXOSUIT = Devices(hip=Device(kind="spring", stiffness_below_nm_per_rad=50.0))
 
 
 @dataclass(frozen=True)
@@ -58,9 +63,15 @@ def _paper(
     name: str,
     rhythm: RhythmBounds = RhythmBounds(),  # noqa: B008 - a frozen value
     limits: Limits = Limits(),  # noqa: B008
+    devices: Devices = Devices(),  # noqa: B008
 ) -> GaitProblem:
     return GaitProblem(
-        name=name, step_length_m=0.76, stride_time_s=1.14, rhythm=rhythm, limits=limits
+        name=name,
+        step_length_m=0.76,
+        stride_time_s=1.14,
+        rhythm=rhythm,
+        limits=limits,
+        devices=devices,
     )
 
 
@@ -91,6 +102,18 @@ PRESETS = {
             "berbyuk2002-printed",
             "Problem A as printed, no limits: has no smooth minimiser, and the status says so",
             lambda: _paper("berbyuk2002-printed", limits=_NO_LIMITS),
+        ),
+        Preset(
+            "ankle-exoskeleton",
+            "berbyuk2002 with an elastic ankle exoskeleton: 180 N m/rad in dorsiflexion, slack in "
+            "plantarflexion, no mass (stiffness: Collins et al. 2015)",
+            lambda: _paper("ankle-exoskeleton", devices=_ANKLE_EXOSKELETON),
+        ),
+        Preset(
+            "hip-exosuit",
+            "berbyuk2002 with an elastic hip exosuit: 50 N m/rad in extension, slack in flexion, "
+            "no mass (stiffness assumed)",
+            lambda: _paper("hip-exosuit", devices=_HIP_EXOSUIT),
         ),
         Preset(
             "winter-slow",

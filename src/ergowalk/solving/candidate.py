@@ -9,6 +9,7 @@ import xarray as xr
 
 from ergowalk.solving.answer import dense_energy, dense_gait, minimised
 from ergowalk.solving.stages import OrderSearch, StageResult
+from ergowalk.solving.verdict import conflict
 
 
 @dataclass(frozen=True)
@@ -63,20 +64,7 @@ def dense(
 def failed(candidate: Candidate, history: list[dict[str, Any]], where: str) -> Gait:
     """What is shown of a search that did not converge, and which constraints are in conflict."""
     dataset, _ = dense(candidate, history, final=True)
-    status = f"not converged {where}: {candidate.result.minimum.message}{_conflict(candidate)}"
+    status = (
+        f"not converged {where}: {candidate.result.minimum.message}{conflict(candidate.result)}"
+    )
     return Gait(candidate, dataset, history, status, settled=False)
-
-
-CONFLICT, MOST_NAMED = 1e-4, 4
-"""Violation (scaled) from which a constraint is in conflict, and how many of them are named."""
-
-
-def _conflict(candidate: Candidate) -> str:
-    """Which constraints no motion near the last one could satisfy together, worst first."""
-    result = candidate.result
-    violations = result.collocation.programme.violations(result.minimum.x)
-    worst = sorted((v, name) for name, v in violations.items() if v > CONFLICT)[::-1]
-    if not worst or result.minimum.violation <= CONFLICT:
-        return ""
-    named = ", ".join(name for _, name in worst[:MOST_NAMED])
-    return f"; in conflict: {named}" + (" and others" if len(worst) > MOST_NAMED else "")

@@ -7,6 +7,7 @@ from typing import Any
 from ergowalk.problem.objective import energy_per_metre
 from ergowalk.solving.candidate import Candidate, Gait, dense, failed, record
 from ergowalk.solving.check import MeshCheck
+from ergowalk.solving.verdict import moved
 from ergowalk.transcription.mesh import cut, finer
 
 ROUNDS, MOST_ELEMENTS = 6, 250
@@ -46,9 +47,9 @@ def refine(coarse: Candidate, check_before: MeshCheck | None) -> Gait:
         check = Candidate(search, search.refined(final.result, mesh, 1.0))
         checked, confirmed = dense(check, history)
         change = confirmed / reported - 1
-        moved = _moved(history[-2], history[-1])
+        far = moved(history[-2], history[-1])
         converged = check.result.minimum.converged
-        if not converged or moved <= MESH_TOLERANCE:
+        if not converged or far <= MESH_TOLERANCE:
             break
         if check.result.elements > MOST_ELEMENTS:
             break
@@ -61,7 +62,7 @@ def refine(coarse: Candidate, check_before: MeshCheck | None) -> Gait:
             f"{check.result.elements} did not: {check.result.minimum.message}"
         )
         return Gait(final, dataset, history, status, settled=False)
-    settled = moved <= MESH_TOLERANCE
+    settled = far <= MESH_TOLERANCE
     status = (
         f"{'converged' if settled else 'not converged with the mesh'}: "
         f"E = {reported:.2f} J/m on {final.result.elements} elements, "
@@ -72,13 +73,6 @@ def refine(coarse: Candidate, check_before: MeshCheck | None) -> Gait:
         change = history[-1]["objective_per_metre"] / value - 1
         status += f"; objective {value:.2f} J/m, {100 * change:+.2f} %"
     return Gait(final, dataset, history, status, settled)
-
-
-def _moved(reported: dict[str, Any], check: dict[str, Any]) -> float:
-    """By how much E, and the objective where it is another, differ on two meshes."""
-    names = ("energy_per_metre", "objective_per_metre")
-    pairs = [(float(check[n]), float(reported[n])) for n in names if n in reported]
-    return max(abs(new / old - 1) for new, old in pairs)
 
 
 def taken_over(

@@ -12,6 +12,7 @@ from typing import Any
 
 from ergowalk.gait.rhythm import Contact, Phase
 from ergowalk.mechanics.devices import SENSE, joint_rotation
+from ergowalk.mechanics.functions import cos, sin
 from ergowalk.mechanics.kinematics import BodyMotion, LegMotion, Rotation, leg_points
 from ergowalk.problem import JOINTS, GaitProblem
 from ergowalk.problem.devices import Device, EasedDevice
@@ -236,8 +237,6 @@ class Fittings:
 
 def on_toe_tip(leg: Any, motion: BodyMotion, role: int) -> LegMotion:
     """A leg whose toe tip rests, with the accelerations of foot and toes that follow, (7)."""
-    from ergowalk.mechanics.functions import cos, sin
-
     given = motion.legs[role]
     foot, toes = Rotation(given.foot.angle, given.foot.rate), given.toes
     hanging = LegMotion(given.thigh, given.shank, foot, Rotation(toes.angle, toes.rate))

@@ -36,7 +36,7 @@ from ergowalk.mechanics.kinematics import (
 )
 from ergowalk.problem import JOINTS, DoubleSupport, GaitProblem
 from ergowalk.problem import constraints as c
-from ergowalk.problem.objective import Objective, eq10_joint_powers, squared_moments
+from ergowalk.transcription.charges import charge_own_moments, work_price
 from ergowalk.transcription.devices import LOADED_JOINTS, Fittings
 from ergowalk.transcription.edges import BAND, corridor_edges
 from ergowalk.transcription.phases import (
@@ -76,7 +76,7 @@ class Walker:
 
     def __init__(self, problem: GaitProblem, smoothing: Smoothing) -> None:
         self.problem, self.smoothing = problem, smoothing
-        self.small = smoothing.scaled(_work_price(problem.objective))
+        self.small = smoothing.scaled(work_price(problem.objective))
         self.legs: tuple[LegParameters, LegParameters] = (problem.body.leg(0), problem.body.leg(1))
         self.mass, self.gravity = problem.body.total_mass, problem.body.gravity_m_s2
         self.coefficients: Coefficients = coefficients(problem.body)
@@ -295,45 +295,11 @@ class Walker:
         if phase.legs[1] is Contact.TOE:
             self._toe_phase_rows(terms, instant, points[1], moments[1], reactions[1])
         self.fittings.equations(terms, phase, instant, motion)
-        self._charge(terms, phase, instant, motion)
+        charge_own_moments(self, terms, phase, instant, motion)
         if "foot_2" in instant.coordinates:
             acceleration = instant.coordinates["foot_2"].acceleration
             terms.integrand = terms.integrand + self.small.swing_foot * acceleration**2
         return terms
-
-    def _charge(self, terms: Terms, phase: Phase, instant: Instant, motion: BodyMotion) -> None:
-        """Powers of the walker's own moments (10), and the cost of their squares."""
-        objective, own = self.problem.objective, self.own_moments(instant)
-        paid = list(instant.controls.values())
-        for i, contact in enumerate(phase.legs):
-            powers = eq10_joint_powers(own[i], motion.trunk, motion.legs[i])
-            working = list(zip(JOINTS, powers, strict=True))[: len(LOADED_JOINTS[contact])]
-            charged = [power for joint, power in working if self._own(phase, f"{joint}_{i + 1}")]
-            held = self.fittings.own_in_swing(i, contact, motion, instant)
-            if held is not None:
-                paid.append(held.angle)
-                legs = motion.legs[i]
-                charged.append(held.angle * (legs.foot.rate - legs.shank.rate))
-                self._hold_rows(terms, held)
-            if objective.charges_work:
-                terms.absolute += charged
-        terms.integrand = terms.integrand + self.fittings.help(phase, instant, motion)
-        if objective.moment_squared_s_per_m2:
-            squares = objective.moment_squared_s_per_m2 * squared_moments(paid)
-            terms.integrand = terms.integrand + squares
-
-    def _hold_rows(self, terms: Terms, held: Rotation) -> None:
-        """Limits and cost of the own ankle moment that holds a device in swing."""
-        limits = self.problem.limits
-        strength, speed = (
-            table.of("ankle") for table in (limits.moment_nm_per_kg, limits.moment_rate_nm_per_kg_s)
-        )
-        if strength is not None:
-            terms.between("control bounds", held.angle / strength, -1.0, 1.0)
-        if speed is not None:
-            terms.between("moment rate", held.rate / speed, -1.0, 1.0)
-        price = self.problem.objective.moment_rate_squared_s3_per_m2 + self.small.moment_rate
-        terms.integrand = terms.integrand + price * held.rate**2
 
     def _toe_phase_rows(
         self, terms: Terms, instant: Instant, points: LegPoints, moments: LegMoments, reaction: Any
@@ -410,11 +376,6 @@ class Walker:
 
 SHARING = ("pressure_shift", "reaction_share")
 """The two lines of (12): from the toe tip to the centre of pressure [m], and R_2x per kg."""
-
-
-def _work_price(objective: Objective) -> float:
-    """What a joule gained and lost again costs, over what it costs in E; 1 if work is free."""
-    return sum(objective.of_work) / 2 if objective.charges_work else 1.0
 
 
 def _rotation(state: State) -> Rotation:

@@ -11,8 +11,8 @@ import numpy as np
 
 from ergowalk.corridors import ANGLES
 from ergowalk.gait.rhythm import Contact
+from ergowalk.problem import Limits
 from ergowalk.problem import constraints as c
-from ergowalk.problem.gait_problem import Limits
 from ergowalk.transcription.spline.semi_inverse import Instant
 
 FORCE, METRE = 10.0, 0.1

@@ -39,8 +39,8 @@ def test_a_neighbour_of_a_stored_gait_is_found_from_it(
     gait = Solution.load(told["cheapest"]["gait"])
     assert gait.problem.step_length_m == length
     assert gait.audit().accepted
-    # a step 1 % longer costs about 1 J/m more: the price of the step length is some 100 J/m per m
-    assert 0.0 < gait.energy_per_metre - start.energy_per_metre < 2.0
+    # 7.6 mm at a price of the order of 100 J/m per metre of step length
+    assert 0.0 < abs(gait.energy_per_metre - start.energy_per_metre) < 1.5
     found = collect(folder)
     assert found["way"].item() == "neighbour"
     assert found["energy_per_metre"].item() == gait.energy_per_metre

@@ -96,7 +96,7 @@ def _check_parameters(content: bytes, start: int, end: int, file: str) -> None:
         if length == 0:
             return
         after_name = at + 2 + abs(length)
-        if group == 0 or after_name + 3 > end:
+        if group == 0 or after_name + 4 > end:
             raise _lost_way(at, file)
         step = struct.unpack(order + "h", content[after_name : after_name + 2])[0]
         last = step == 0
@@ -114,7 +114,7 @@ def _holds(content: bytes, at: int, end: int) -> bool:
     if kind not in _SIZES or dimensions > 7 or at + 2 + dimensions > end:
         return False
     values = math.prod(content[at + 2 : at + 2 + dimensions])
-    return at + 2 + dimensions + _SIZES[kind] * values <= end
+    return bool(at + 2 + dimensions + _SIZES[kind] * values <= end)
 
 
 _SIZES = {-1: 1, 1: 1, 2: 2, 4: 4}

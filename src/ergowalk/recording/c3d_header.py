@@ -96,7 +96,7 @@ def _check_parameters(content: bytes, start: int, end: int, file: str) -> None:
         if length == 0:
             return
         after_name = at + 2 + abs(length)
-        if group == 0 or after_name + 3 > end:
+        if group == 0 or after_name + 4 > end:
             raise _lost_way(at, file)
         step = struct.unpack(order + "h", content[after_name : after_name + 2])[0]
         last = step == 0

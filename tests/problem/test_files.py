@@ -152,9 +152,9 @@ def described(value: Value) -> list[str]:
     """Descriptions of all written fields, tables included."""
     found = []
     for name, field in type(value).model_fields.items():
-        if not field.exclude:
+        inner = getattr(value, name)
+        if not field.exclude and inner is not None:
             found.append(field.description or "")
-            inner = getattr(value, name)
             found += described(inner) if isinstance(inner, Value) else []
     return found
 
@@ -287,7 +287,8 @@ def test_the_schema_knows_every_key_and_is_json():
     schema = json_schema()
     assert json.loads(json.dumps(schema)) == schema
     written = tomllib.loads(problem_to_toml(preset("berbyuk2002")))
-    assert set(schema["properties"]) == {*written, "person"}  # which becomes the body
+    # a person becomes the body; a file without devices says nothing of them
+    assert set(schema["properties"]) == {*written, "person", "devices"}
     assert schema["required"] == ["step_length_m", "stride_time_s"]
     for table, keys in written.items():
         if isinstance(keys, dict):

@@ -141,6 +141,8 @@ def _for_toml(schema: dict[str, Any]) -> dict[str, Any]:
                 del field["default"]
                 if len(field["anyOf"]) == 1:
                     field |= field.pop("anyOf")[0]
+            if isinstance(default := field.get("default"), dict):
+                field["default"] = {k: v for k, v in default.items() if v is not None}
             for choice in field.get("anyOf", ()):
                 if "const" in choice:
                     choice.pop("enum", None)  # said twice by older pydantic
@@ -175,12 +177,14 @@ def _table(value: Value, place: str, commented: bool) -> Iterator[str]:
     }
     yield from _keys(keys, fields, commented)
     for name, table in inner.items():
-        if not any(_table(table, "", False)):
-            continue  # nothing in it unless given
+        given = any(_table(table, "", False))
         path = f"{place}.{name}" if place else name
-        yield ""
+        if given or commented:
+            yield ""
         if commented:
             yield from _comment(fields[name].description)
+        if not given:
+            continue  # such a table has no defaults to show
         yield f"[{path}]"
         yield from _table(table, path, commented)
 

@@ -200,7 +200,11 @@ class GaitProblem(Value):
     objective: Objective = Field(
         default=Objective(), description="what is minimised: a weighted sum, (10) alone by default"
     )
-    devices: Devices = Field(default=Devices(), description="passive devices at the joints")
+    devices: Devices = Field(
+        default=Devices(),
+        description="passive devices, a table [devices.hip], [devices.knee], [devices.ankle] or "
+        "[devices.metatarsal] for each joint that has one",
+    )
     folder: Path | None = Field(
         default=None, exclude=True, description="where relative file names start"
     )

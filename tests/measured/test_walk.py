@@ -185,7 +185,7 @@ def test_long_gaps_leave_the_longest_piece() -> None:
         (recording(KNOWN, unit="m"), {"units": "mm"}, "is 0.00053 m in mm"),
         (WHOLE.flipped(), {}, "pushes the foot down: the plate is upside down.*--flip-forces"),
         (without_plates(WHOLE), {"mass_kg": None}, "has no force plates to weigh.*give --mass"),
-        (WHOLE, {"mass_kg": 2.0}, "mass = 2.0: must lie between 15 and 300 kg"),
+        (WHOLE, {"mass_kg": 2.0}, "mass = 2.0: must lie between 20 and 300 kg"),
         (WHOLE, {"markers": "none"}, "markers = 'none': no such marker set; choose one of winter"),
         (WHOLE, {"markers": "winter"}, "of the set winter are missing: knee, ankle"),
     ],

@@ -88,9 +88,7 @@ def test_a_start_is_for_a_collocation(paper_gait_file: Path) -> None:
 def test_not_converging_is_an_answer(stopped: Run) -> None:
     answer = stopped.answer
     assert answer.acceptable is False
-    assert answer.status.startswith(
-        "not converged on the coarse mesh: ran out of iterations; in conflict: "
-    )
+    assert answer.status == "not converged on the coarse mesh: ran out of iterations"
     check_readable(answer.dataset)
     assert answer.mesh_history[-1]["converged"] is False
     assert answer.mesh_history[-1]["final"] is True

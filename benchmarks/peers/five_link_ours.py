@@ -21,6 +21,7 @@ from ergowalk.transcription.phases import (
     Coordinate,
     Instant,
     InstantFunction,
+    Join,
     Link,
     PhasedProblem,
     PhaseModel,
@@ -49,13 +50,13 @@ def problem(variant: str) -> PhasedProblem:
         for edge, state in (("start", walker.START_STATE), ("strike", walker.END_STATE)):
             for kind, numbers in zip(("value", "rate"), state, strict=True):
                 fixed |= {(edge, n, kind): x for n, x in zip(LINK, numbers, strict=True)}
-        return PhasedProblem((step,), times, exchange={}, fixed=fixed, links=(), **nothing)
+        return PhasedProblem((step,), times, joins=(), fixed=fixed, links=(), **nothing)
     pause = _phase("pause", "strike", "end", NEXT, [], _no_acceleration)
     end = walker.STEP_TIME + PAUSE
     return PhasedProblem(
         (step, pause),
         times | {"end": (end, end)},
-        exchange=dict(zip(NEXT, LINK, strict=True)),
+        joins=(Join("end", "start", dict(zip(NEXT, LINK, strict=True))),),
         fixed={},
         links=(Link("heel_strike", "strike", _strike),),
         **nothing,

@@ -172,7 +172,7 @@ def test_the_lines_of_linear_sharing_end_at_nothing_through_the_toe_tip() -> Non
     linear = walking_problem(PROBLEM.replace(double_support="linear"), PhaseOrder.FLAT_FIRST)
     for name in SHARING:
         assert linear.fixed["other_toe_off", name, "value"] == 0.0
-        assert name not in linear.exchange.values()
+        assert name not in linear.joins[0].names.values()
     shift = next(q for q in linear.phases[0].coordinates if q.name == "pressure_shift")
     assert (shift.lower, shift.upper) == (-PROBLEM.body.leg(0).toe_length, 0.0)
 

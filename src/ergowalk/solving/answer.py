@@ -27,6 +27,7 @@ SAMPLES = 9
 
 def dense_gait(walker: Walker, order: PhaseOrder, trajectory: Trajectory) -> xr.Dataset:
     """The curves on a dense grid: between the nodes, where a transcription cannot hide."""
+    walker = walker.at(trajectory.shared)
     longest = walker.problem.stride_time_s / 400
     pieces, last = [], 0.0
     phases = half_stride_phases(order)

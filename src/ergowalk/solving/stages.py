@@ -83,15 +83,16 @@ class StageResult:
 
 @dataclass(frozen=True)
 class Start:
-    """Where a stage begins: curves, and boundary instants [s]."""
+    """Where a stage begins: curves, boundary instants [s], unknowns of no instant."""
 
     guess: Guess
     times: Mapping[str, float]
+    shared: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
     def at(cls, curves: Trajectory) -> Start:
         """At the end of another stage."""
-        return cls(curves.as_guess(), curves.times)
+        return cls(curves.as_guess(), curves.times, curves.shared)
 
 
 class OrderSearch:
@@ -235,7 +236,7 @@ class OrderSearch:
     ) -> StageResult:
         began = time.process_time()
         programme = collocation.programme
-        x = collocation.pack(start.guess, start.times)
+        x = collocation.pack(start.guess, start.times, start.shared)
         _ = programme.oracle
         self.effort.build_time += time.process_time() - began
         multipliers = None

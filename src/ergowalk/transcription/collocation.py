@@ -84,11 +84,15 @@ class Collocation:
             blocks.append(_time_block(self.problem, self.layout))
         return NonlinearProgramme(self.layout.lower, self.layout.upper, blocks)
 
-    def pack(self, guess: Guess, times: Mapping[str, float]) -> Array:
+    def pack(
+        self, guess: Guess, times: Mapping[str, float], shared: Mapping[str, float] | None = None
+    ) -> Array:
         """Variables for a guess: curves sampled at mesh and Gauss points, slacks from powers."""
         layout, x = self.layout, np.zeros(self.layout.size)
         for name, index in layout.times.items():
             x[index] = times[name]
+        for name, index in layout.shared.items():
+            x[index] = (shared or {})[name]
         for i, (phase, where) in enumerate(zip(self.problem.phases, layout.phases, strict=True)):
             fractions = self.mesh[i]
             at_mesh = guess(i, fractions)
@@ -134,6 +138,8 @@ class Collocation:
         time, so they scale with the element's length; the adjoints of continuity do not.
         """
         new_variables = np.zeros(self.layout.size)
+        for name, index in self.layout.shared.items():
+            new_variables[index] = variables[coarse.layout.shared[name]]
         new_rows, first = [], 0
         for here, there, fine, old, pk in zip(
             self.layout.phases,
@@ -181,13 +187,14 @@ class Collocation:
                     physical[where.algebraics],
                 )
             )
-        return Trajectory(times, tuple(pieces))
+        shared = {name: float(physical[i]) for name, i in self.layout.shared.items()}
+        return Trajectory(times, tuple(pieces), shared)
 
 
 def _element_indices(where: PhaseIndices) -> NDArray[np.int64]:
     """Local variables of every element, in the order of :class:`_Local`: (n_v, n_e)."""
     n_e = where.accelerations.shape[0]
-    parts = [np.full((n_e, 1), where.times[0]), np.full((n_e, 1), where.times[1])]
+    parts = [np.tile(np.array([*where.times, *where.shared], dtype=np.int64), (n_e, 1))]
     parts += [w[:-1] for w in (where.values, where.rates, where.controls)]
     parts += [w[1:] for w in (where.values, where.rates, where.controls)]
     parts.append(where.bulges)
@@ -209,20 +216,23 @@ def _link_block(link: Link, problem: PhasedProblem, layout: Layout) -> Block:
     time = ca.SX.sym("t")
     symbols = {k: ca.SX.sym("_".join(k[1:])) for k in keys}
     scaled = {k: layout.scale[layout.boundary[k]] * s for k, s in symbols.items()}
+    shared = {x.name: ca.SX.sym(x.name) for x in problem.shared}
+    common = {x.name: x.scale * shared[x.name] for x in problem.shared}
     names = {k[1] for k in keys if k[2] != "control"}
     controls = {n: scaled[link.boundary, n, "control"] for n in link.controls}
     states = {
         n: State(scaled[link.boundary, n, "value"], scaled[link.boundary, n, "rate"]) for n in names
     }
-    terms: Terms = link.function(Instant(time, states, controls, {}))
+    terms: Terms = link.function(Instant(time, states, controls, {}, shared=common))
     kernel = Kernel(
         link.name,
-        ca.vertcat(time, *symbols.values()),
+        ca.vertcat(time, *symbols.values(), *shared.values()),
         ca.SX.sym("none", 0),
         ca.SX(0),
         ca.vertcat(*(row[1] for row in terms.rows)),
     )
     indices = [layout.times[link.boundary], *(layout.boundary[k] for k in keys)]
+    indices += layout.shared.values()
     return Block(
         kernel,
         np.array(indices, dtype=np.int64)[:, None],
@@ -234,10 +244,12 @@ def _link_block(link: Link, problem: PhasedProblem, layout: Layout) -> Block:
 
 
 def _time_block(problem: PhasedProblem, layout: Layout) -> Block:
-    """Linear constraints between the boundary instants."""
-    symbols = {name: ca.SX.sym(name) for name in layout.times}
+    """Linear constraints between the boundary instants and what is shared."""
+    places = {**layout.times, **layout.shared}
+    symbols = {name: ca.SX.sym(name) for name in places}
+    scaled = {name: layout.scale[i] * symbols[name] for name, i in places.items()}
     rows = [
-        sum((f * symbols[name] for name, f in factors.items()), ca.SX(0))
+        sum((f * scaled[name] for name, f in factors.items()), ca.SX(0))
         for _, factors, _, _ in problem.time_rows
     ]
     kernel = Kernel(
@@ -245,7 +257,7 @@ def _time_block(problem: PhasedProblem, layout: Layout) -> Block:
     )
     return Block(
         kernel,
-        np.array(list(layout.times.values()), dtype=np.int64)[:, None],
+        np.array(list(places.values()), dtype=np.int64)[:, None],
         np.zeros((0, 1)),
         np.array([row[2] for row in problem.time_rows]),
         np.array([row[3] for row in problem.time_rows]),

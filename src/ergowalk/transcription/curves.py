@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,10 +79,11 @@ class PhaseCurves:
 
 @dataclass(frozen=True)
 class Trajectory:
-    """All phases of a solved (or guessed) problem, and the boundary instants [s]."""
+    """All phases of a solved (or guessed) problem, the boundary instants [s], what is shared."""
 
     times: Mapping[str, float]
     phases: tuple[PhaseCurves, ...]
+    shared: Mapping[str, float] = field(default_factory=dict)
 
     def as_guess(self) -> Guess:
         """These curves as a guess on another mesh of the same phases."""

@@ -119,15 +119,16 @@ def _closing(
             continue  # at rest up to heel-off
 
         def function(t: Instant, joint: str = joint) -> Terms:
-            motion = walker.motion(seen, t)
-            return _rows("latch closes", walker.fittings.closing(role, joint, motion))
+            at = walker.at(t.shared)
+            return _rows("latch closes", at.fittings.closing(role, joint, at.motion(seen, t)))
 
         if device.kind in ("locked", "spring", "parallel"):
             yield Link(f"latch_{joint}_{role + 1}_{phase.end}", phase.end, function)
 
 
 def _leaving(walker: Walker, phase: Phase, instant: Instant) -> list[object]:
-    return walker.fittings.leaving_the_ground(1, walker.motion(phase, instant), instant)
+    at = walker.at(instant.shared)
+    return at.fittings.leaving_the_ground(1, at.motion(phase, instant), instant)
 
 
 def _balanced(
@@ -138,10 +139,11 @@ def _balanced(
     name = f"{joint}_{role + 1}"
 
     def function(instant: Instant) -> Terms:
-        motion = walker.motion(phase, instant)
+        at = walker.at(instant.shared)
+        motion = at.motion(phase, instant)
         slips = {n: s.value for n, s in instant.coordinates.items()}
         contact = phase.legs[role]
-        device = walker.fittings.moment(role, joint, contact, motion, slips, {})
+        device = at.fittings.moment(role, joint, contact, motion, slips, {})
         terms = Terms()
         terms.equal("device held", instant.controls[name] + device)
         return terms

@@ -28,10 +28,10 @@ class CompiledFunction:
         names = [c.name for c in phase.coordinates]
         controls = [u.name for u in phase.controls]
         algebraics = [z.name for z in phase.algebraics]
-        given = () if phase.curves is None else phase.curves.names
+        given = [name for curves in phase.curves for name in curves.names]
         sizes = (1, *[len(names)] * 3, *[len(controls)] * 2, len(algebraics), len(given))
-        symbols = [ca.SX.sym(f"s{i}", n) for i, n in enumerate(sizes)]
-        t, value, rate, acceleration, control, slope, z, curves = symbols
+        symbols = [ca.SX.sym(f"s{i}", n) for i, n in enumerate((*sizes, len(phase.shared)))]
+        t, value, rate, acceleration, control, slope, z, curves, shared = symbols
         terms = function(
             Instant(
                 t,
@@ -40,6 +40,7 @@ class CompiledFunction:
                 {} if kind == "mesh" else {n: z[i] for i, n in enumerate(algebraics)},
                 {n: slope[i] for i, n in enumerate(controls)},
                 {n: curves[i] for i, n in enumerate(given)},
+                {x.name: shared[i] for i, x in enumerate(phase.shared)},
             )
         )
         self.labels = [row[0] for row in terms.rows]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ergowalk.nlp import Kernel
 from ergowalk.transcription.functions import Call, CompiledFunction
-from ergowalk.transcription.phases import PhasedProblem, PhaseModel
+from ergowalk.transcription.phases import PhasedProblem, PhaseModel, TimeCurves
 from ergowalk.transcription.rows import Rows
 from ergowalk.transcription.scheme import GaussScheme
 
@@ -98,14 +98,13 @@ def phase_kernel(
     cost = cost + _control_rates(local, problem, rows)
     _control_bounds(local, rows)
     variables = ca.vertcat(local.variables, *slacks)
-    given = local.given
     kernel = Kernel(
         phase.name,
         variables,
-        ca.vertcat(local.parameters, *(entry.symbols for entry in given.values())),
+        ca.vertcat(local.parameters, *local.all_given),
         cost,
         rows.expression,
-        _expansion(phase, variables, local, tuple(given)) if given else None,
+        _expansion(variables, local) if local.all_given else None,
         rows.chain(variables),
     )
     absolute = ca.Function("absolute", [variables, local.parameters], [ca.vertcat(*absolutes)])
@@ -138,7 +137,7 @@ class _Called:
 
 @dataclass(frozen=True)
 class _Given:
-    """Given functions of time at one place of an element: instant, values, both derivatives."""
+    """Given functions at one place of an element: argument, values, both derivatives."""
 
     symbols: Any
     count: int
@@ -150,23 +149,24 @@ class _Given:
         return value + first * step + second * step**2 / 2
 
 
-def _expansion(
-    phase: PhaseModel, variables: Any, local: _Local, places: tuple[float, ...]
-) -> Callable[[Any, Any], Any]:
-    """The given functions of time at some places of every element: instant, values, derivatives."""
-    instants = ca.Function(
-        "instants",
-        [variables, local.parameters],
-        [ca.vertcat(*(local.time(s) for s in places))],
-    )
-    assert phase.curves is not None
-    evaluate, rows = phase.curves.evaluate, 3 * len(phase.curves.names)
+def _expansion(variables: Any, local: _Local) -> Callable[[Any, Any], Any]:
+    """The given functions where every element uses them: argument, values, derivatives."""
+    parts = []
+    for i, curves in enumerate(local.phase.curves):
+        places = list(local.given[i])
+        if places:
+            arguments = ca.vertcat(*(local.argument(curves, s) for s in places))
+            instants = ca.Function("instants", [variables, local.parameters], [arguments])
+            parts.append((curves, len(places), instants))
 
     def expansion(v: Any, p: Any) -> Any:
-        uses = v.shape[1]
-        times = instants.map(uses)(v, p)
-        flat = ca.reshape(times, 1, len(places) * uses)
-        return ca.reshape(ca.vertcat(flat, evaluate(flat)), (1 + rows) * len(places), uses)
+        uses, found = v.shape[1], []
+        for curves, count, instants in parts:
+            flat = ca.reshape(instants.map(uses)(v, p), 1, count * uses)
+            rows = 1 + 3 * len(curves.names)
+            values = ca.vertcat(flat, curves.evaluate(flat))
+            found.append(ca.reshape(values, rows * count, uses))
+        return ca.vertcat(*found)
 
     return expansion
 
@@ -194,28 +194,45 @@ class _Local:
         self.a = ca.horzcat(*(a_scale * v for v in raw_a))
         self.z = ca.horzcat(*(z_scale * v for v in raw_z))
         inner = [v for pair in zip(raw_a, raw_z, strict=True) for v in pair]
-        self.variables = ca.vertcat(self.t0, self.t1, *raw_left, *raw_right, raw_bulge, *inner)
+        raw_shared = ca.SX.sym("shared", len(phase.shared))
+        self.shared = np.array([x.scale for x in phase.shared]) * raw_shared
+        ends = (*raw_left, *raw_right, raw_bulge)
+        self.variables = ca.vertcat(self.t0, self.t1, raw_shared, *ends, *inner)
         self.duration = self.t1 - self.t0
         self.h = self.duration * self.parameters[1]
-        self.given: dict[float, _Given] = {}
+        self.given: list[dict[float, _Given]] = [{} for _ in phase.curves]
 
     def time(self, s: float) -> Any:
         """Instant [s] of local fraction s."""
         return self.t0 + self.duration * (self.parameters[0] + self.parameters[1] * s)
 
+    def argument(self, curves: TimeCurves, s: float) -> Any:
+        """Where given functions of time are taken at local fraction s [s]."""
+        if curves.later is None:
+            return self.time(s)
+        names = [x.name for x in self.phase.shared]
+        return self.time(s) + self.shared[names.index(curves.later)]
+
     def curves(self, s: float) -> Any:
         """The given functions of time at local fraction s."""
-        assert self.phase.curves is not None
-        if s not in self.given:
-            count = len(self.phase.curves.names)
-            self.given[s] = _Given(ca.SX.sym(f"given_{len(self.given)}", 1 + 3 * count), count)
-        return self.given[s].at(self.time(s))
+        values = []
+        for curves, given in zip(self.phase.curves, self.given, strict=True):
+            count = len(curves.names)
+            if s not in given:
+                given[s] = _Given(ca.SX.sym(f"given_{len(given)}", 1 + 3 * count), count)
+            values.append(given[s].at(self.argument(curves, s)))
+        return ca.vertcat(*values)
+
+    @property
+    def all_given(self) -> list[Any]:
+        """Symbols of all given functions in the order in which their values come."""
+        return [entry.symbols for given in self.given for entry in given.values()]
 
     def call(self, function: CompiledFunction, s: float) -> Call:
         """A phase function at local fraction s."""
-        count = 0 if self.phase.curves is None else len(self.phase.curves.names)
+        count = sum(len(curves.names) for curves in self.phase.curves)
         curves = self.curves(s) if function.sees_curves else ca.SX(count, 1)
-        return function.at(ca.vertcat(*self.arguments(s), curves))
+        return function.at(ca.vertcat(*self.arguments(s), curves, self.shared))
 
     def arguments(self, s: float) -> list[Any]:
         """Time, values, rates, accelerations, controls, slopes, algebraics at local fraction s."""

@@ -43,10 +43,12 @@ class PhaseIndices:
     ``values``, ``rates`` (n_e + 1, n_q) and ``controls`` (n_e + 1, n_u) at mesh points;
     ``bulges`` (n_e, n_u): how far a control stands off its chord in the middle of an element;
     ``accelerations`` (n_e, m, n_q), ``algebraics`` (n_e, m, n_z), ``plus`` and ``minus``
-    (n_e, m, n_abs) at Gauss points; ``times`` the two boundary instants.
+    (n_e, m, n_abs) at Gauss points; ``times`` the two boundary instants; ``shared`` (n_s,) what
+    belongs to no instant of the phase.
     """
 
     times: tuple[int, int]
+    shared: IndexArray
     values: IndexArray
     rates: IndexArray
     controls: IndexArray
@@ -62,6 +64,7 @@ class Layout:
     """Indices, bounds and scales of all unknowns: physical value = scale * variable."""
 
     times: Mapping[str, int]
+    shared: Mapping[str, int]
     phases: tuple[PhaseIndices, ...]
     boundary: Mapping[tuple[str, str, str], int]
     lower: Array
@@ -77,9 +80,9 @@ class Layout:
 def lay_out(problem: PhasedProblem, mesh: Mesh, m: int, absolutes: tuple[int, ...]) -> Layout:
     """Give every unknown its place.
 
-    Unknowns at a phase boundary are shared by both phases, and those at the last boundary are
-    the ones that ``problem.exchange`` names at the first: continuity and periodicity need no
-    equations. Variables of one element stand together, which keeps the factorisation banded.
+    Unknowns at a phase boundary belong to both phases, and those at joined boundaries are the
+    same: continuity and periodicity need no equations. Variables of one element stand together,
+    which keeps the factorisation banded.
 
     Parameters
     ----------
@@ -88,15 +91,16 @@ def lay_out(problem: PhasedProblem, mesh: Mesh, m: int, absolutes: tuple[int, ..
     """
     register = _Register()
     times = {name: register.add(low, high, 1.0) for name, (low, high) in problem.times.items()}
+    shared = {x.name: register.add(x.lower, x.upper, x.scale) for x in problem.shared}
+    common = shared | times
     boundary: dict[tuple[str, str, str], int] = {}
-    phases = []
-    last = problem.phases[-1].end
+    phases, joined = [], _joined(problem)
     for phase, fractions, n_abs in zip(problem.phases, mesh, absolutes, strict=True):
         n_e = len(fractions) - 1
         points, gauss, bulges = [], [], []
         for k in range(n_e + 1):
             edge = phase.start if k == 0 else phase.end if k == n_e else None
-            points.append(_point(register, problem, phase, edge, boundary, edge == last))
+            points.append(_point(register, joined, phase, edge, boundary))
             if k < n_e:
                 # two Gauss points cannot hold a parabola: between them it would do as it likes
                 room = INF if m > 2 else 0.0
@@ -111,6 +115,7 @@ def lay_out(problem: PhasedProblem, mesh: Mesh, m: int, absolutes: tuple[int, ..
         phases.append(
             PhaseIndices(
                 times=(times[phase.start], times[phase.end]),
+                shared=np.array([common[x.name] for x in phase.shared], dtype=np.int64),
                 values=values,
                 rates=rates,
                 controls=controls,
@@ -125,6 +130,7 @@ def lay_out(problem: PhasedProblem, mesh: Mesh, m: int, absolutes: tuple[int, ..
         register.tighten(boundary[edge, name, kind], number, number)
     return Layout(
         times,
+        shared,
         tuple(phases),
         boundary,
         np.array(register.lower),
@@ -133,22 +139,31 @@ def lay_out(problem: PhasedProblem, mesh: Mesh, m: int, absolutes: tuple[int, ..
     )
 
 
+def _joined(problem: PhasedProblem) -> dict[tuple[str, str], tuple[str, str]]:
+    """(boundary, name) -> the same unknown at the boundary that it is joined with."""
+    found = {}
+    for join in problem.joins:
+        for at_end, at_start in join.names.items():
+            found[join.end, at_end] = join.start, at_start
+            found[join.start, at_start] = join.end, at_end
+    return found
+
+
 def _point(
     register: _Register,
-    problem: PhasedProblem,
+    joined: Mapping[tuple[str, str], tuple[str, str]],
     phase: PhaseModel,
     edge: str | None,
     boundary: dict[tuple[str, str, str], int],
-    is_last: bool,
 ) -> tuple[list[int], list[int], list[int]]:
     def place(name: str, kind: str, lower: float, upper: float, scale: float) -> int:
         if edge is None:
             return register.add(lower, upper, scale)
         key = (edge, name, kind)
         if key not in boundary:
-            first = (problem.phases[0].start, problem.exchange.get(name, ""), kind)
-            if is_last and first in boundary:
-                boundary[key] = boundary[first]
+            same = (*joined.get((edge, name), ("", "")), kind)
+            if same in boundary:
+                boundary[key] = boundary[same]
             else:
                 boundary[key] = register.add(-INF, INF, scale)
         register.tighten(boundary[key], lower, upper)

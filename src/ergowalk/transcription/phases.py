@@ -3,7 +3,8 @@
 Coordinates have rates and accelerations (second-order dynamics); controls are continuous and
 parabolas within an element (straight lines where an element has two Gauss points); algebraic
 variables live at the Gauss points. A phase tells what must hold inside, at mesh points, and at the
-ends of elements. Nothing here knows about walking.
+ends of elements. Unknowns that
+belong to no instant are shared by all phases. Nothing here knows about walking.
 """
 
 from __future__ import annotations
@@ -58,6 +59,7 @@ class Instant:
     algebraics: Mapping[str, Any]
     control_slopes: Mapping[str, Any] = field(default_factory=dict)
     curves: Mapping[str, Any] = field(default_factory=dict)
+    shared: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -71,10 +73,13 @@ class TimeCurves:
     evaluate
         Row of instants (1, n) -> their values, then first, then second time derivatives, as a
         matrix (3 len(names), n), of CasADi MX or of numbers.
+    later
+        A shared unknown of the phase [s] that is added to the instant first, if any.
     """
 
     names: tuple[str, ...]
     evaluate: Callable[[Any], Any]
+    later: str | None = None
 
     def at(self, times: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
         """Their values at instants (n,), by name."""
@@ -129,6 +134,9 @@ class PhaseModel:
         algebraics are extrapolated: without them a force leaks between the points.
     curves
         Given functions of time that the functions of this phase see in ``Instant.curves``.
+    shared
+        Shared unknowns of the problem, and boundary instants of other phases, that the functions
+        of this phase see in ``Instant.shared``.
     absolute_weights
         What the positive and the negative part of ``Terms.absolute`` are charged with; their sum
         is positive.
@@ -145,7 +153,8 @@ class PhaseModel:
     path: InstantFunction
     at_ends: InstantFunction
     path_everywhere: bool = False
-    curves: TimeCurves | None = None
+    curves: tuple[TimeCurves, ...] = ()
+    shared: tuple[Unknown, ...] = ()
     absolute_weights: tuple[float, float] = (1.0, 1.0)
 
 
@@ -160,32 +169,49 @@ class Link:
 
 
 @dataclass(frozen=True)
+class Join:
+    """Two boundaries at which unknowns are one and the same.
+
+    ``names`` maps what they are called at the boundary ``end``, where a phase ends, to what they
+    are called at ``start``, where one starts. The instants may differ: time may start anew.
+    """
+
+    end: str
+    start: str
+    names: Mapping[str, str]
+
+
+@dataclass(frozen=True)
 class PhasedProblem:
-    """A chain of phases with free boundary times and a periodic exchange at the end.
+    """Chains of phases with free boundary times, joined at their ends.
 
     Attributes
     ----------
     phases
-        In time order; each starts where the one before ends.
+        In time order; each starts where the one before ends, or at a boundary of a join.
     times
         Bounds (lower, upper) of each boundary instant; equal bounds fix it.
     time_rows
-        (label, {boundary: factor}, lower, upper): linear constraints between boundary instants.
-    exchange
-        Name at the last boundary -> name at the first: these unknowns are one and the same.
+        (label, {boundary or shared unknown: factor}, lower, upper): linear constraints between
+        them.
+    joins
+        Boundaries whose unknowns are one and the same, a periodic motion's first and last, say.
     fixed
         (boundary, name, "value" | "rate" | "control") -> number.
     control_rates
         Bound on |control'| by name, where there is one.
     control_rate_cost
         Weight of the integral of squared control rates, by name.
+    shared
+        Unknowns that belong to no instant.
     """
 
     phases: tuple[PhaseModel, ...]
     times: Mapping[str, tuple[float, float]]
     time_rows: tuple[tuple[str, Mapping[str, float], float, float], ...]
-    exchange: Mapping[str, str]
+    joins: tuple[Join, ...]
     fixed: Mapping[tuple[str, str, str], float]
     links: tuple[Link, ...]
     control_rates: Mapping[str, float]
     control_rate_cost: Mapping[str, float]
+    shared: tuple[Unknown, ...] = ()

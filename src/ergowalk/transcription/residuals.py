@@ -78,7 +78,7 @@ def mesh_residuals(
     walker: Walker, order: PhaseOrder, trajectory: Trajectory, allowed: Allowance | None = None
 ) -> Residuals:
     """Errors of every element, and the work on the dense curves."""
-    allowed = allowed or Allowance()
+    allowed, walker = allowed or Allowance(), walker.at(trajectory.shared)
     parts = [
         _PhaseErrors(walker, phase, curves)
         for phase, curves in zip(half_stride_phases(order), trajectory.phases, strict=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -92,6 +93,15 @@ class Walker:
         self.linear_sharing = problem.double_support is DoubleSupport.LINEAR
 
     # --- unknowns -------------------------------------------------------------------------
+
+    @property
+    def shared(self) -> tuple[Unknown, ...]:
+        """Unknowns that belong to no instant."""
+        return ()
+
+    def at(self, shared: Mapping[str, Any]) -> Walker:
+        """The walker that has these values, symbols or numbers, of the unknowns of no instant."""
+        return self
 
     def coordinates(self, phase: Phase) -> tuple[Coordinate, ...]:
         """Angles of this phase; a flat foot has none, a foot on its toe tip follows the ankle.

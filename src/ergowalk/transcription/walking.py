@@ -10,7 +10,7 @@ from ergowalk.gait.rhythm import BOUNDARIES, Contact, Phase, PhaseOrder, half_st
 from ergowalk.problem import JOINTS, GaitProblem
 from ergowalk.problem import constraints as c
 from ergowalk.transcription.device_links import device_links, fixed_moments
-from ergowalk.transcription.phases import Instant, Link, PhasedProblem, PhaseModel, Terms
+from ergowalk.transcription.phases import Instant, Join, Link, PhasedProblem, PhaseModel, Terms
 from ergowalk.transcription.walker import SHARING, Smoothing, Walker
 
 FIT_ROUGHNESS = 1e-4
@@ -30,21 +30,23 @@ def walking_problem(
 
     def model(phase: Phase) -> PhaseModel:
         def inside(instant: Instant) -> Terms:
-            motion = walker.motion(phase, instant)
-            terms = walker.dynamics_rows(phase, instant, motion)
-            terms.rows += walker.friction_rows(phase, instant).rows
-            loads = walker.reactions(instant)
-            terms.rows += walker.pressure_rows(phase, instant, motion, loads).rows
+            at = walker.at(instant.shared)
+            motion = at.motion(phase, instant)
+            terms = at.dynamics_rows(phase, instant, motion)
+            terms.rows += at.friction_rows(phase, instant).rows
+            terms.rows += at.pressure_rows(phase, instant, motion, at.reactions(instant)).rows
             return terms
 
         def path(instant: Instant) -> Terms:
-            motion = walker.motion(phase, instant)
-            terms = walker.corridor_rows(phase, instant, motion)
-            terms.rows += walker.clearance_rows(phase, instant, motion).rows
+            at = walker.at(instant.shared)
+            motion = at.motion(phase, instant)
+            terms = at.corridor_rows(phase, instant, motion)
+            terms.rows += at.clearance_rows(phase, instant, motion).rows
             return terms
 
         def at_ends(instant: Instant) -> Terms:
-            return walker.load_rows(phase, instant, walker.motion(phase, instant))
+            at = walker.at(instant.shared)
+            return at.load_rows(phase, instant, at.motion(phase, instant))
 
         return PhaseModel(
             phase.name,
@@ -58,7 +60,8 @@ def walking_problem(
             path,
             at_ends,
             path_everywhere=phase.legs[1] is Contact.TOE,
-            curves=walker.corridor_curves,
+            curves=(walker.corridor_curves,),
+            shared=walker.shared,
             absolute_weights=problem.objective.of_work,
         )
 
@@ -71,18 +74,20 @@ def kinematic_problem(problem: GaitProblem, order: PhaseOrder) -> PhasedProblem:
 
     def model(phase: Phase) -> PhaseModel:
         def inside(instant: Instant) -> Terms:
-            motion = walker.motion(phase, instant)
+            at = walker.at(instant.shared)
+            motion = at.motion(phase, instant)
             terms = Terms()
-            places = walker.corridor_places(phase, instant, motion)
+            places = at.corridor_places(phase, instant, motion)
             terms.integrand = sum(place**2 for _, place in places)
             if phase.legs[1] is Contact.TOE:
-                walker.toe_contact_rows(terms, walker.points(motion)[1])
+                at.toe_contact_rows(terms, at.points(motion)[1])
             for state in instant.coordinates.values():
                 terms.integrand = terms.integrand + FIT_ROUGHNESS * state.acceleration**2
             return terms
 
         def path(instant: Instant) -> Terms:
-            return walker.clearance_rows(phase, instant, walker.motion(phase, instant))
+            at = walker.at(instant.shared)
+            return at.clearance_rows(phase, instant, at.motion(phase, instant))
 
         def nothing(instant: Instant) -> Terms:
             return Terms()
@@ -104,7 +109,8 @@ def kinematic_problem(problem: GaitProblem, order: PhaseOrder) -> PhasedProblem:
             inside,
             path,
             nothing,
-            curves=walker.corridor_curves,
+            curves=(walker.corridor_curves,),
+            shared=walker.shared,
         )
 
     return _chain(walker, order, model, with_loads=False)
@@ -148,15 +154,16 @@ def _chain(
             ("rhythm (3)", {later: 1.0, earlier: -1.0}, shortest, np.inf)
             for earlier, later in c.eq3_rhythm_order(order)
         ),
-        exchange=exchange,
+        joins=(Join("half_stride", "heel_contact", exchange),),
         fixed=fixed,
         links=(
-            Link("toe_off", "other_toe_off", lambda t: walker.toe_off(at_toe_off, t)),
-            Link("landing", "half_stride", walker.landing),
+            Link("toe_off", "other_toe_off", lambda t: walker.at(t.shared).toe_off(at_toe_off, t)),
+            Link("landing", "half_stride", lambda t: walker.at(t.shared).landing(t)),
             *(device_links(walker, phases) if with_loads else ()),
         ),
         control_rates={n: r for n, r in rates.items() if r is not None},
         control_rate_cost={f"{j}_{i}": cost[j] for j in JOINTS for i in (1, 2)},
+        shared=walker.shared,
     )
 
 

@@ -43,7 +43,7 @@ PAUSE = 0.1
 def problem(variant: str) -> PhasedProblem:
     """One variant as a chain of phases."""
     step = _phase("step", "start", "strike", LINK, MOMENT, _mechanics)
-    nothing = {"time_rows": (), "control_rates": {}, "control_rate_cost": {}}
+    nothing = {"time_rows": ()}
     times = {"start": (0.0, 0.0), "strike": (walker.STEP_TIME, walker.STEP_TIME)}
     if variant == "posture":
         fixed = {}

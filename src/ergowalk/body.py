@@ -8,7 +8,7 @@ differ.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -99,6 +99,19 @@ class Body(Value):
         return LegParameters(
             **{k: v[index] if isinstance(v, tuple) else v for k, v in values.items()}
         )
+
+    def exchanged(self) -> Self:
+        """The body with the legs exchanged."""
+        return self._with_pairs(lambda pair: pair[::-1])
+
+    def mirrored(self) -> Self:
+        """The body with two equal legs, the mean of both."""
+        return self._with_pairs(lambda pair: sum(pair) / 2)
+
+    def _with_pairs(self, change: Callable[[tuple[float, float]], Any]) -> Self:
+        pairs = {f: v for f in _LEG_FIELDS.values() if isinstance(v := getattr(self, f), tuple)}
+        changed: Self = self.replace(**{f: change(v) for f, v in pairs.items()}) if pairs else self
+        return changed
 
     @property
     def legs_equal(self) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -75,15 +75,14 @@ def chain(
     time_rows: Sequence[tuple[str, Mapping[str, float], float, float]] = (),
 ) -> PhasedProblem:
     """A phased problem with nothing but what is given."""
+    given = {"control_rates": rates or {}, "control_rate_cost": rate_cost or {}}
     return PhasedProblem(
-        phases,
+        tuple(replace(phase, **given) for phase in phases),
         times,
         tuple(time_rows),
         (Join(phases[-1].end, phases[0].start, exchange or {}),),
         fixed or {},
         tuple(links),
-        rates or {},
-        rate_cost or {},
     )
 
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from typing import Literal, Self
+from collections.abc import Callable, Iterator
+from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
 
 from ergowalk.errors import ProblemError
 from ergowalk.gait.rhythm import Contact
 from ergowalk.mechanics.devices import SENSE, Law
+from ergowalk.problem.legs import LEG_TABLES
 from ergowalk.values import FiniteFloat, NonNegativeFloat, Value, invalid
 
 Kind = Literal["locked", "free", "spring", "damper", "parallel", "series"]
@@ -185,33 +186,22 @@ STIFF = 400.0
 """Stiffness [N m/rad] of what stands for a lock while a search begins."""
 
 
-class Devices(Value):
-    """The devices of both legs, by joint; none unless given."""
+class LegDevices(Value):
+    """The devices of one leg, by joint; those of both legs unless given."""
 
     _error = ProblemError
 
-    hip: Device | None = Field(default=None, description="device at the hips")
-    knee: Device | None = Field(default=None, description="device at the knees")
-    ankle: Device | None = Field(default=None, description="device at the ankles")
-    metatarsal: Device | None = Field(default=None, description="device at the metatarsal joints")
-
-    def at(self, joint: str) -> Device | None:
-        """The device at a joint."""
-        device: Device | None = getattr(self, joint)
-        return device
+    hip: Device | None = Field(default=None, description="device at the hip")
+    knee: Device | None = Field(default=None, description="device at the knee")
+    ankle: Device | None = Field(default=None, description="device at the ankle")
+    metatarsal: Device | None = Field(default=None, description="device at the metatarsal joint")
 
     def items(self) -> Iterator[tuple[str, Device]]:
         """(joint, device) of every device."""
         for joint in SENSE:
-            device = self.at(joint)
+            device: Device | None = getattr(self, joint)
             if device is not None:
                 yield joint, device
-
-    def eased(self) -> Devices:
-        """All of them with the help of the walker where it may give none in the end."""
-        helped = {joint: EasedDevice.of(device) for joint, device in self.items()}
-        eased: Devices = self.replace(**helped)
-        return eased
 
     def sentence(self) -> str:
         """All devices in words; empty if there is none."""
@@ -229,3 +219,52 @@ class Devices(Value):
                 "leave it out",
             )
         return self
+
+
+class Devices(LegDevices):
+    """The devices of both legs, by joint, and of one leg; none unless given."""
+
+    _error = ProblemError
+
+    hip: Device | None = Field(default=None, description="device at the hips")
+    knee: Device | None = Field(default=None, description="device at the knees")
+    ankle: Device | None = Field(default=None, description="device at the ankles")
+    metatarsal: Device | None = Field(default=None, description="device at the metatarsal joints")
+    leg_1: LegDevices | None = Field(default=None, description="devices of leg 1 alone")
+    leg_2: LegDevices | None = Field(default=None, description="devices of leg 2 alone")
+
+    def of(self, leg: int) -> dict[str, Device]:
+        """The devices of a leg by joint (0 is leg 1)."""
+        own: LegDevices | None = getattr(self, LEG_TABLES[leg])
+        return {**dict(self.items()), **({} if own is None else dict(own.items()))}
+
+    def everything(self) -> Iterator[Device]:
+        """Every device, of both legs and of one."""
+        for table in (self, self.leg_1, self.leg_2):
+            if table is not None:
+                yield from (device for _, device in table.items())
+
+    def changed(self, change: Callable[[Device], Device]) -> Devices:
+        """All of them with a change."""
+
+        def table(given: LegDevices) -> dict[str, Device]:
+            return {joint: change(device) for joint, device in given.items()}
+
+        changes: dict[str, Any] = table(self)
+        for name in LEG_TABLES:
+            own: LegDevices | None = getattr(self, name)
+            if own is not None:
+                changes[name] = own.replace(**table(own))
+        found: Devices = self.replace(**changes)
+        return found
+
+    def eased(self) -> Devices:
+        """All of them with the help of the walker where it may give none in the end."""
+        return self.changed(EasedDevice.of)
+
+    def sentence(self) -> str:
+        """All devices in words; empty if there is none."""
+        words = [super().sentence()]
+        for leg, own in ((1, self.leg_1), (2, self.leg_2)):
+            words.append("" if own is None else f"leg {leg}: {own.sentence()}")
+        return "; ".join(w for w in words if w)

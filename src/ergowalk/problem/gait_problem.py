@@ -6,14 +6,15 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any, Literal, Self
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, model_validator
 
 from ergowalk.anthropometry import Person
-from ergowalk.body import Body
+from ergowalk.body import Body, LegParameters
 from ergowalk.corridors import ANGLES, Corridor, HumanGait, human_gait
 from ergowalk.errors import BodyError, CorridorError, ProblemError
 from ergowalk.gait.rhythm import PRINTED_RHYTHM, PhaseOrder, Rhythm
 from ergowalk.problem.devices import Device, Devices
+from ergowalk.problem.legs import Same, Stride, exchanged, has_leg_tables, of_leg
 from ergowalk.problem.limits import Limits, Off
 from ergowalk.problem.objective import Objective
 from ergowalk.values import INPUT_ONLY, FiniteFloat, PositiveFloat, Value, invalid
@@ -29,8 +30,21 @@ class DoubleSupport(StrEnum):
     LINEAR = "linear"
 
 
+class LegRhythm(Value):
+    """Rhythm parameters of one leg; "same" as of both."""
+
+    _error = ProblemError
+
+    heel_end: Instant | Same = Field(default="same", description="end of rotation over the heel")
+    heel_off: Instant | Same = Field(default="same", description="heel-off")
+    toe_off: Instant | Same = Field(default="same", description="toe-off")
+
+
 class RhythmBounds(Value):
-    """Rhythm parameters of leg 1 as fractions of T: one number fixes, a pair bounds (3)."""
+    """Rhythm parameters of a leg as fractions of T after its heel contact.
+
+    One number fixes, a pair bounds (3).
+    """
 
     _error = ProblemError
 
@@ -46,6 +60,8 @@ class RhythmBounds(Value):
         description="'toe-off-first', 'flat-first' (other toe-off before or after foot-flat), "
         "or 'best' to try both",
     )
+    leg_1: LegRhythm | None = Field(default=None, description="rhythm of leg 1 that differs")
+    leg_2: LegRhythm | None = Field(default=None, description="rhythm of leg 2 that differs")
 
     def bounds(self, name: str) -> tuple[float, float]:
         """Lower and upper bound of a parameter; equal where it is fixed."""
@@ -89,6 +105,13 @@ class RhythmBounds(Value):
         if self.order != "best":
             return (PhaseOrder(self.order),)
         return tuple(order for order, room in possible.items() if room)
+
+    @model_validator(mode="after")
+    def _legs_in_order(self) -> Self:
+        if has_leg_tables(self):
+            for leg in (0, 1):
+                of_leg(self, leg)
+        return self
 
     @model_validator(mode="after")
     def _in_order(self) -> Self:
@@ -136,6 +159,18 @@ class RhythmBounds(Value):
 _RANGES = {"heel_end": (0.0, 0.5), "heel_off": (0.0, 0.5), "toe_off": (0.5, 1.0)}
 
 
+class LegCorridors(Value):
+    """Corridors of one leg; "same" as of both."""
+
+    _error = CorridorError
+
+    source: str = Field(default="same", description="human data, or 'same'")
+    width_sd: PositiveFloat | Same = Field(default="same", description="half width in SDs")
+    hip_width_sd: Width = Field(default="same", description="half width at the hip")
+    knee_width_sd: Width = Field(default="same", description="half width at the knee")
+    ankle_width_sd: Width = Field(default="same", description="half width at the ankle")
+
+
 class Corridors(Value):
     """Which human data bound the joint angles (6), and how widely."""
 
@@ -153,6 +188,8 @@ class Corridors(Value):
     )
     knee_width_sd: Width = Field(default="same", description="half width at the knee")
     ankle_width_sd: Width = Field(default="same", description="half width at the ankle")
+    leg_1: LegCorridors | None = Field(default=None, description="corridors of leg 1 that differ")
+    leg_2: LegCorridors | None = Field(default=None, description="corridors of leg 2 that differ")
 
     def width(self, joint: str) -> float | None:
         """Half width at a joint in standard deviations, None where there is no corridor."""
@@ -200,6 +237,7 @@ class GaitProblem(Value):
     objective: Objective = Field(
         default=Objective(), description="what is minimised: a weighted sum, (10) alone by default"
     )
+    stride: Stride = Field(default=Stride(), description="both legs' steps, where they differ")
     devices: Devices = Field(
         default=Devices(),
         description="passive devices, a table [devices.hip], [devices.knee], [devices.ankle] or "
@@ -225,19 +263,63 @@ class GaitProblem(Value):
 
     def devices_of(self, leg: int) -> tuple[tuple[str, Device], ...]:
         """(joint, device) of every device of a leg (0 is leg 1 of the paper)."""
-        return tuple(self.devices.items())
+        return tuple(self.devices.of(leg).items())
+
+    def limits_of(self, leg: int) -> Limits:
+        """Limits of a leg (0 is leg 1)."""
+        return of_leg(self.limits, leg)
+
+    def rhythm_of(self, leg: int) -> RhythmBounds:
+        """Bounds of the rhythm of a leg (0 is leg 1)."""
+        return of_leg(self.rhythm, leg)
+
+    def corridors_of(self, leg: int) -> Corridors:
+        """What is asked of the corridors of a leg (0 is leg 1)."""
+        return of_leg(self.corridors, leg)
+
+    @property
+    def legs_differ(self) -> bool:
+        """Whether a parameter, a bound or a device is that of one leg alone."""
+        tables = (self.limits, self.rhythm, self.corridors, self.devices)
+        return not self.body.legs_equal or any(has_leg_tables(table) for table in tables)
+
+    @property
+    def full_stride(self) -> bool:
+        """Whether both halves of the stride are solved, each leg with a rhythm of its own."""
+        if self.stride.legs == "auto":
+            return self.legs_differ
+        return self.stride.legs == "each"
+
+    def exchanged(self) -> GaitProblem:
+        """The same problem with the legs exchanged: leg 2 is called leg 1."""
+        found: GaitProblem = self.replace(
+            body=self.body.exchanged(),
+            stride=self.stride.exchanged(),
+            **{name: exchanged(getattr(self, name)) for name in LEG_SPECIFIC},
+        )
+        return found
+
+    def mirrored(self) -> GaitProblem:
+        """The problem of a walker whose legs are equal: the mean of both, and what both share."""
+        found: GaitProblem = self.replace(
+            body=self.body.mirrored(),
+            stride=Stride(legs="mirrored"),
+            **{name: getattr(self, name).replace(leg_1=None, leg_2=None) for name in LEG_SPECIFIC},
+        )
+        return found
 
     def human(self) -> HumanGait:
         """The human data that the corridors come from."""
         return human_gait(self.corridors.source, self.folder)
 
-    def angle_corridors(self) -> dict[str, Corridor]:
-        """Corridors of hip, knee and ankle angle in radians (6).
+    def angle_corridors(self, leg: int = 0) -> dict[str, Corridor]:
+        """Corridors of hip, knee and ankle angle of a leg in radians (6).
 
         One that is off is there too, :meth:`Corridors.width` says so: its middle is where a search
         begins.
         """
-        human, asked = self.human(), self.corridors
+        asked = self.corridors_of(leg)
+        human = human_gait(asked.source, self.folder)
         return {
             joint: human.angle_corridor(joint, asked.width(joint) or asked.width_sd)
             for joint in ANGLES
@@ -275,27 +357,22 @@ class GaitProblem(Value):
         body = {**person.parameters(), **given} if isinstance(given, dict) else given
         return {**data, "person": None, "body": body}
 
-    @field_validator("body")
-    @classmethod
-    def _legs_equal(cls, body: Body) -> Body:
-        if not body.legs_equal:
+    @model_validator(mode="after")
+    def _mirrored_legs_are_equal(self) -> Self:
+        if self.stride.legs == "mirrored" and self.legs_differ:
             raise invalid(
-                "legs",
-                "legs differ",
-                "both legs must be equal: the half stride is solved and mirrored",
-                "give one number for each leg parameter",
+                "stride.legs",
+                "mirrored",
+                "the legs differ, so one cannot mirror the other",
+                "leave it out, or give both legs the same parameters, bounds and devices",
             )
-        return body
+        return self
 
     @model_validator(mode="after")
     def _step_reachable(self) -> Self:
-        leg = self.body.leg(0)
-        # In double support the trailing toe tip and the leading heel are L - (l_h + l_m) apart,
-        # and each is at most the stretched leg away from the hip, which is above the ground.
-        foot = leg.heel_to_metatarsal + leg.toe_length
-        trailing = leg.thigh_length + leg.shank_length + leg.ankle_to_metatarsal + leg.toe_length
-        leading = leg.thigh_length + leg.shank_length + leg.heel_to_ankle
-        longest = trailing + leading + foot
+        longest = min(
+            _longest_step(self.body.leg(behind), self.body.leg(1 - behind)) for behind in (0, 1)
+        )
         if self.step_length_m >= longest:
             raise invalid(
                 "step_length_m",
@@ -304,3 +381,20 @@ class GaitProblem(Value):
                 "shorten the step or lengthen the legs",
             )
         return self
+
+
+LEG_SPECIFIC = ("limits", "rhythm", "corridors", "devices")
+"""Tables that may say something of one leg alone."""
+
+
+def _longest_step(behind: LegParameters, ahead: LegParameters) -> float:
+    """Longest step [m] with stretched legs.
+
+    In double support the trailing toe tip and the leading heel are L - (l_h + l_m) apart, and each
+    is at most the stretched leg away from the hip, which is above the ground.
+    """
+    foot = behind.heel_to_metatarsal + behind.toe_length
+    trailing = behind.thigh_length + behind.shank_length
+    trailing += behind.ankle_to_metatarsal + behind.toe_length
+    leading = ahead.thigh_length + ahead.shank_length + ahead.heel_to_ankle
+    return trailing + leading + foot

@@ -8,6 +8,7 @@ from pydantic import Field
 
 from ergowalk.corridors import ANGLES
 from ergowalk.errors import ProblemError
+from ergowalk.problem.legs import LEG_TABLES, Same, of_leg
 from ergowalk.quantities import JOINTS
 from ergowalk.values import PositiveFloat, Value
 
@@ -29,6 +30,36 @@ class JointBounds(Value):
         """The bound of a joint, None where it is off."""
         value = getattr(self, joint)
         return None if value == "off" else value
+
+
+class LegJointBounds(Value):
+    """One bound per joint of one leg; "same" as of both."""
+
+    _error = ProblemError
+
+    hip: Bound | Same = Field(default="same", description="bound at the hip, 'off' or 'same'")
+    knee: Bound | Same = Field(default="same", description="bound at the knee, 'off' or 'same'")
+    ankle: Bound | Same = Field(default="same", description="bound at the ankle, 'off' or 'same'")
+    metatarsal: Bound | Same = Field(
+        default="same", description="bound at the metatarsal joint, 'off' or 'same'"
+    )
+
+
+class LegLimits(Value):
+    """Limits of one leg; "same" as of both."""
+
+    _error = ProblemError
+
+    vertical_reaction_body_weights: Bound | Same = Field(
+        default="same", description="cap on the vertical reaction in body weights"
+    )
+    friction_coefficient: Bound | Same = Field(default="same", description="friction cone")
+    moment_rate_nm_per_kg_s: LegJointBounds | None = Field(
+        default=None, description="bounds on the rate of the joint moments, N m/(kg s)"
+    )
+    moment_nm_per_kg: LegJointBounds | None = Field(
+        default=None, description="bounds on the joint moments, N m/kg"
+    )
 
 
 class Limits(Value):
@@ -58,11 +89,17 @@ class Limits(Value):
     moment_nm_per_kg: JointBounds = Field(
         default=JointBounds(), description="bounds on the joint moments, N m/kg: strength"
     )
+    leg_1: LegLimits | None = Field(default=None, description="limits of leg 1 that differ")
+    leg_2: LegLimits | None = Field(default=None, description="limits of leg 2 that differ")
 
     @property
     def bounds_moment_rate(self) -> bool:
         """Whether hip, knee and ankle have a bound that makes the problem well posed."""
-        return all(self.moment_rate_nm_per_kg_s.of(joint) is not None for joint in ANGLES)
+        return all(
+            of_leg(self, leg).moment_rate_nm_per_kg_s.of(joint) is not None
+            for joint in ANGLES
+            for leg in (0, 1)
+        )
 
     def sentence(self) -> str:
         """The limits in words, to stand beside every E."""
@@ -73,7 +110,11 @@ class Limits(Value):
             parts.append(f"|R_x| <= {self.friction_coefficient:g} R_y")
         parts += _joint_sentence("moment rate", self.moment_rate_nm_per_kg_s, "N m/(kg s)")
         parts += _joint_sentence("moment", self.moment_nm_per_kg, "N m/kg")
-        return ", ".join(parts) or "no limits"
+        words = [", ".join(parts) or "no limits"]
+        for leg, name in enumerate(LEG_TABLES):
+            if getattr(self, name) is not None:
+                words.append(f"leg {leg + 1}: {of_leg(self, leg).sentence()}")
+        return "; ".join(words)
 
 
 def _joint_sentence(what: str, bounds: JointBounds, unit: str) -> list[str]:

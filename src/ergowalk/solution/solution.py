@@ -92,6 +92,27 @@ class Solution:
         return Rhythm(**json.loads(self.dataset.attrs["rhythm"]))
 
     @property
+    def rhythms(self) -> tuple[Rhythm, Rhythm]:
+        """Contact instants of each leg as fractions of T after its own heel contact."""
+        second = self.dataset.attrs.get("rhythm_leg_2", self.dataset.attrs["rhythm"])
+        return self.rhythm, Rhythm(**json.loads(second))
+
+    @property
+    def step_lengths(self) -> tuple[float, float]:
+        """Lengths of the steps with which leg 1 and leg 2 land [m]; together 2 L."""
+        length = float(self.dataset.attrs["step_length"])
+        stored = self.dataset.attrs.get("step_lengths")
+        first, second = json.loads(stored) if stored else (length, length)
+        return float(first), float(second)
+
+    @property
+    def step_times(self) -> tuple[float, float]:
+        """Durations of the steps that end as leg 1 and leg 2 land [s]; together T."""
+        time = float(self.dataset.attrs["stride_time"])
+        second = self.rhythm.toe_tip_start * time
+        return time - second, second
+
+    @property
     def mesh_history(self) -> list[dict[str, Any]]:
         """One record per mesh that was solved: elements, energy_per_metre, iterations, ..."""
         history: list[dict[str, Any]] = json.loads(self.dataset.attrs["mesh_history"])

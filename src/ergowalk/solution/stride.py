@@ -45,17 +45,39 @@ class Piece:
     devices: Mapping[tuple[int, str], Array | None] = field(default_factory=dict)
 
 
-def stride_dataset(problem: GaitProblem, pieces: Sequence[Piece]) -> xr.Dataset:
+def stride_dataset(
+    problem: GaitProblem,
+    halves: Sequence[Sequence[Piece]],
+    step_lengths: tuple[float, float] | None = None,
+) -> xr.Dataset:
     """All variables of a gait file for [0, T], without global attributes.
 
-    The second half repeats the first with the legs exchanged, one step further on.
+    Parameters
+    ----------
+    halves : one or two sequences of pieces
+        Each on a clock of its own, its legs in their roles, the origin at the leading heel. The
+        second half is the first one, one step further on, unless it is given.
+    step_lengths : (float, float), optional
+        With which leg 1 and leg 2 land [m], where they are not equal.
     """
-    halves = [_half_variables(problem, piece) for piece in pieces]
-    first = {name: np.concatenate([h[name] for h in halves]) for name in halves[0]}
-    second = _half_a_stride_later(problem, first)
+    whole = len(halves) == 1
+    seen = (problem, problem if whole else problem.exchanged())
+    first, second = (
+        _joined([_half_variables(seen[i], piece) for piece in halves[0 if whole else i]])
+        for i in (0, 1)
+    )
+    contact = problem.stride_time_s / 2 if whole else float(first["time"][-1])
+    ahead = problem.step_length_m if step_lengths is None else step_lengths[1]
+    second = _later(second, contact, ahead)
     values = {name: np.concatenate([first[name], second[name]]) for name in first}
-    values |= _corridors(problem, values["time"])
+    values |= _corridors(problem, values["time"], contact)
+    if not whole:
+        values["time"][-1] = problem.stride_time_s
     return _labelled(values)
+
+
+def _joined(pieces: Sequence[dict[str, Array]]) -> dict[str, Array]:
+    return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
 
 
 def _half_variables(problem: GaitProblem, piece: Piece) -> dict[str, Array]:
@@ -90,7 +112,7 @@ def _half_variables(problem: GaitProblem, piece: Piece) -> dict[str, Array]:
         "segment_angular_acceleration": by_leg("acceleration"),
         "joint_angle": _stack(angles),
         "joint_moment": _stack(moments),
-        **({DEVICE_MOMENT: _stack(fitted)} if any(problem.devices.items()) else {}),
+        **({DEVICE_MOMENT: _stack(fitted)} if any(problem.devices.everything()) else {}),
         "joint_power": _stack(powers),
         "ground_reaction_force": _stack(loads.reactions),
         "center_of_pressure": _stack(loads.pressures),
@@ -116,26 +138,28 @@ def _stack(parts: Any) -> Array:
     return np.stack([_stack(p) for p in parts], axis=1)
 
 
-def _half_a_stride_later(problem: GaitProblem, first: dict[str, Array]) -> dict[str, Array]:
-    second = {}
-    for name, values in first.items():
+def _later(roles: dict[str, Array], contact: float, ahead: float) -> dict[str, Array]:
+    """The half in which leg 2 leads: it lands at ``contact`` [s] and ``ahead`` [m]."""
+    found = {}
+    for name, values in roles.items():
         dims = ALL_QUANTITIES[name].dims
-        second[name] = values[:, ::-1] if "leg" in dims else values.copy()
-    second["time"] = first["time"] + problem.stride_time_s / 2
-    second["hip_position"] = first["hip_position"] + np.array([problem.step_length_m, 0.0])
-    second["center_of_pressure"] = second["center_of_pressure"] + problem.step_length_m
-    return second
+        found[name] = values[:, ::-1] if "leg" in dims else values.copy()
+    found["time"] = roles["time"] + contact
+    found["hip_position"] = roles["hip_position"] + np.array([ahead, 0.0])
+    found["center_of_pressure"] = found["center_of_pressure"] + ahead
+    return found
 
 
-def _corridors(problem: GaitProblem, time: Array) -> dict[str, Array]:
-    """Bounds of (6); leg 2 is half a stride later; the metatarsal joint has none."""
+def _corridors(problem: GaitProblem, time: Array, contact: float) -> dict[str, Array]:
+    """Bounds of (6), leg 2's after its heel contact [s]; the metatarsal joint has none."""
     lower = np.full((len(time), 2, len(JOINTS)), np.nan)
     upper = lower.copy()
-    fraction = time / problem.stride_time_s
-    for j, (joint, corridor) in enumerate(problem.angle_corridors().items()):
-        if problem.corridors.width(joint) is None:
-            continue
-        for leg, shift in enumerate((0.0, 0.5)):
+    stride = problem.stride_time_s
+    fraction = time / stride
+    for leg, shift in enumerate((0.0, 1.0 - contact / stride)):
+        for j, (joint, corridor) in enumerate(problem.angle_corridors(leg).items()):
+            if problem.corridors_of(leg).width(joint) is None:
+                continue
             lower[:, leg, j] = corridor.lower(fraction + shift)
             upper[:, leg, j] = corridor.upper(fraction + shift)
     return {"corridor_lower": lower, "corridor_upper": upper}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from ergowalk.audit import audit
-from ergowalk.gait.rhythm import PhaseOrder, Rhythm, half_stride_phases
+from ergowalk.gait.rhythm import Rhythm
 from ergowalk.problem import GaitProblem
 from ergowalk.problem.files import problem_to_toml
 from ergowalk.solution import Solution
@@ -18,25 +19,26 @@ from ergowalk.solution.energy import joint_energies
 from ergowalk.solution.objective import objective_per_metre
 from ergowalk.solution.stride import Piece, stride_dataset
 from ergowalk.transcription.curves import Trajectory, joined
+from ergowalk.transcription.halves import Half, in_phases
 from ergowalk.transcription.motion import body_motion, device_moments, load_sharing
-from ergowalk.transcription.walker import Walker
+from ergowalk.transcription.steps import STEP_1
 
 SAMPLES = 9
 """Samples of each element, both ends included."""
 
 
-def dense_gait(walker: Walker, order: PhaseOrder, trajectory: Trajectory) -> xr.Dataset:
+def dense_gait(problem: GaitProblem, halves: Sequence[Half], trajectory: Trajectory) -> xr.Dataset:
     """The curves on a dense grid: between the nodes, where a transcription cannot hide."""
-    walker = walker.at(trajectory.shared)
-    longest = walker.problem.stride_time_s / 400
-    pieces, last = [], 0.0
-    phases = half_stride_phases(order)
-    for phase, curves in zip(phases, trajectory.phases, strict=True):
+    stride = problem.stride_time_s
+    longest, ends = stride / 400, step_times(halves, trajectory, stride)
+    pieces: list[list[Piece]] = [[] for _ in halves]
+    for half, walker, phase, curves in in_phases(halves, trajectory):
+        which = halves.index(half)
+        own = pieces[which]
         edges = curves.start + curves.duration * curves.fractions
-        edges[0] = last  # where the phase before has ended, to the last digit
-        if phase is phases[-1]:
-            edges[-1] = walker.problem.stride_time_s / 2
-        last = float(edges[-1])
+        edges[0] = own[-1].time[-1] if own else 0.0  # to the last digit
+        if phase is half.phases[-1]:
+            edges[-1] = ends[which]
         time, samples = [], []
         for k, width in enumerate(np.diff(edges)):
             count = max(SAMPLES, int(np.ceil(width / longest)) + 1)
@@ -46,8 +48,23 @@ def dense_gait(walker: Walker, order: PhaseOrder, trajectory: Trajectory) -> xr.
         motion = body_motion(walker, phase, dense)
         sharing = load_sharing(walker, phase, dense, motion)
         devices = device_moments(walker, phase, dense, motion)
-        pieces.append(Piece(np.concatenate(time), phase.legs, motion, sharing, devices))
-    return stride_dataset(walker.problem, pieces)
+        own.append(Piece(np.concatenate(time), phase.legs, motion, sharing, devices))
+    return stride_dataset(problem, pieces, step_lengths(problem, trajectory))
+
+
+def step_times(halves: Sequence[Half], trajectory: Trajectory, stride: float) -> list[float]:
+    """How long each half that is solved lasts [s]; both together the stride to the last digit."""
+    if len(halves) == 1:
+        return [stride / 2]
+    first = trajectory.times["half_stride"]
+    return [first, stride - first]
+
+
+def step_lengths(problem: GaitProblem, trajectory: Trajectory) -> tuple[float, float]:
+    """Lengths of the steps with which leg 1 and leg 2 land [m]."""
+    length = problem.step_length_m
+    first = trajectory.shared.get(STEP_1, length)
+    return first, 2 * length - first
 
 
 def dense_energy(dataset: xr.Dataset, step_length: float) -> float:
@@ -65,25 +82,37 @@ def minimised(dataset: xr.Dataset, problem: GaitProblem) -> float:
         return float("nan")
 
 
-def rhythm_of(trajectory: Trajectory, stride: float) -> Rhythm:
-    """Contact instants as fractions of T."""
-    times = trajectory.times
-    return Rhythm(
-        heel_end=times["heel_end"] / stride,
-        heel_off=times["heel_off"] / stride,
-        toe_off=times["other_toe_off"] / stride + 0.5,
-    )
+def rhythms_of(halves: Sequence[Half], trajectory: Trajectory, stride: float) -> tuple[Rhythm, ...]:
+    """Contact instants of leg 1, and of leg 2 if it has a rhythm of its own.
+
+    As fractions of T after the heel contact of the leg.
+    """
+    times = [half.times(trajectory.times) for half in halves]
+    lasts = [t / stride for t in step_times(halves, trajectory, stride)]
+    found = []
+    for i, own in enumerate(times):
+        other = times[1 - i] if len(times) > 1 else own
+        found.append(
+            Rhythm(
+                heel_end=own["heel_end"] / stride,
+                heel_off=own["heel_off"] / stride,
+                toe_off=other["other_toe_off"] / stride + lasts[i],
+                toe_tip_start=lasts[i],
+            )
+        )
+    return tuple(found)
 
 
 def describe(
     dataset: xr.Dataset,
     problem: GaitProblem,
-    rhythm: Rhythm,
+    rhythms: Sequence[Rhythm],
     *,
     energy: float,
     method: str,
     status: str,
     history: list[dict[str, Any]],
+    step_lengths: tuple[float, float] = (0.0, 0.0),
     extra: dict[str, Any],
 ) -> xr.Dataset:
     """The dataset with the global attributes of a gait file, ``acceptable`` still 0."""
@@ -101,7 +130,7 @@ def describe(
             "method": method,
             "solver_status": status,
             "acceptable": 0,
-            "rhythm": json.dumps(rhythm.as_dict()),
+            "rhythm": json.dumps(rhythms[0].as_dict()),
             "body_parameters": json.dumps(problem.body.by_symbol()),
             "problem": problem_to_toml(problem),
             "limits": problem.conditions(),
@@ -109,7 +138,17 @@ def describe(
             "ergowalk_version": __version__,
             **extra,
         }
-    )
+    ).assign_attrs(_of_legs(rhythms, step_lengths))
+
+
+def _of_legs(rhythms: Sequence[Rhythm], step_lengths: tuple[float, float]) -> dict[str, str]:
+    """Attributes of a gait in which both halves were solved."""
+    if len(rhythms) == 1:
+        return {}
+    return {
+        "rhythm_leg_2": json.dumps(rhythms[1].as_dict()),
+        "step_lengths": json.dumps(step_lengths),
+    }
 
 
 def judged(dataset: xr.Dataset, settled: bool, folder: Path | None) -> Solution:

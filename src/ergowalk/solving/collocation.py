@@ -8,15 +8,16 @@ from dataclasses import replace
 from ergowalk.problem import GaitProblem
 from ergowalk.solution import Solution
 from ergowalk.solution.progress import Report
-from ergowalk.solving.answer import describe, judged, rhythm_of
+from ergowalk.solving.answer import describe, judged, rhythms_of, step_lengths
 from ergowalk.solving.candidate import Candidate, Gait
 from ergowalk.solving.check import MeshCheck
-from ergowalk.solving.easing import eased, needs_easing
 from ergowalk.solving.impulses import show_impulses
 from ergowalk.solving.memory import recall_for, remember
 from ergowalk.solving.refinement import refine, taken_over
+from ergowalk.solving.searching import Search, best_of, from_mirrored, in_all_orders
 from ergowalk.solving.stages import COARSE, POINTS, Effort, OrderSearch, Start
 from ergowalk.solving.start import StartingGait
+from ergowalk.transcription.halves import Orders
 from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.perturbation import Perturbation
 from ergowalk.transcription.walker import Smoothing
@@ -34,15 +35,22 @@ def solve_collocation(
     recheck: bool = False,
 ) -> Solution:
     """The cheapest gait of all phase orders that the problem allows; see :func:`~.verb.solve`."""
-    effort, store = Effort(), KernelStore()
+    effort = Effort()
     weights = smoothing or (Smoothing() if problem.well_posed else FAINT)
-    searches = [
-        OrderSearch(problem, order, weights, effort, progress, store)
-        for order in problem.rhythm.orders()
-    ]
-    begun = None if start is None else _begin(searches, start)
-    candidates = [begun] if begun else [_searched(s, perturbation) for s in searches]
-    best = min(candidates, key=lambda c: (not c.result.minimum.converged, c.result.energy_at_nodes))
+
+    def search(
+        problem: GaitProblem, orders: Orders, store: KernelStore | None = None
+    ) -> OrderSearch:
+        return OrderSearch(problem, orders, weights, effort, progress, store)
+
+    begun = None if start is None else _begin(search, problem, start)
+    if begun:
+        candidates = [begun]
+    elif problem.full_stride:
+        candidates = [from_mirrored(search, problem, perturbation)]
+    else:
+        candidates = in_all_orders(search, problem, perturbation)
+    best = best_of(candidates)
     check = None if recheck or start is None else check_of(start, best)
     neighbour = taken_over(best, check, [])
     if neighbour is not None:
@@ -61,34 +69,28 @@ def solve_collocation(
     return _finished(gait, candidates, effort, weights)
 
 
-def _searched(search: OrderSearch, perturbation: Perturbation | None) -> Candidate:
-    """The gait of one phase order on few elements."""
-    if needs_easing(search.problem):
-        return Candidate(search, eased(search, perturbation))
-    held = search.fixed_rhythm(search.fit(), perturbation)
-    if not held.minimum.converged or search.problem.rhythm.fixed:
-        return Candidate(search, held)
-    return Candidate(search, search.free_rhythm(held, perturbation))
-
-
-def _begin(searches: list[OrderSearch], start: Solution) -> Candidate | None:
+def _begin(search: Search, problem: GaitProblem, start: Solution) -> Candidate | None:
     """The first stage from a solved gait; None where it cannot begin or does not converge.
 
     A gait that remembers its point and multipliers is continued on its own mesh: what a small
     change of the problem takes. Any other is a guess on the coarse mesh.
     """
     begun = StartingGait(start)
-    for search in searches:
-        times = begun.times(search.problem)
-        if search.order is begun.order and times is not None:
-            before = recall_for(start, search, POINTS)
-            if before is not None:
-                result = search.continued(before, times)
-                if result.minimum.converged:
-                    return Candidate(search, result, continued=True)
-            result = search.started(Start(begun.guess(search.problem), times))
-            return Candidate(search, result) if result.minimum.converged else None
-    return None
+    orders = begun.orders(problem)
+    if orders is None:
+        return None
+    here = search(problem, orders)
+    times = begun.times(problem, here.halves)
+    if times is None:
+        return None
+    shared = begun.shared(problem)
+    before = recall_for(start, here, POINTS)
+    if before is not None:
+        result = here.continued(before, times, shared)
+        if result.minimum.converged:
+            return Candidate(here, result, continued=True)
+    result = here.started(Start(begun.guess(problem, here.halves), times, shared))
+    return Candidate(here, result) if result.minimum.converged else None
 
 
 def check_of(start: Solution, found: Candidate) -> MeshCheck | None:
@@ -103,16 +105,16 @@ def _finished(
 ) -> Solution:
     """Attributes, audit, and the verdict."""
     search = gait.candidate.search
-    problem = search.problem
+    problem, curves = search.problem, gait.candidate.result.trajectory
     tried = {
-        str(c.search.order): {
+        c.search.name: {
             "energy_at_nodes": c.result.energy_at_nodes,
             "converged": c.result.minimum.converged,
         }
         for c in candidates
     }
     extra = {
-        "phase_order": str(search.order),
+        "phase_order": search.name,
         "phase_orders_tried": json.dumps(tried),
         "smoothing": json.dumps(vars(smoothing)),
         "iterations": effort.iterations,
@@ -124,7 +126,8 @@ def _finished(
     dataset = describe(
         gait.dataset,
         problem,
-        rhythm_of(gait.candidate.result.trajectory, problem.stride_time_s),
+        rhythms_of(search.halves, curves, problem.stride_time_s),
+        step_lengths=step_lengths(problem, curves),
         energy=next(e["energy_per_metre"] for e in gait.history if e.get("final")),
         method="collocation",
         status=gait.status,

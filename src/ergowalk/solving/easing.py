@@ -12,13 +12,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ergowalk.gait.rhythm import half_stride_phases
 from ergowalk.problem import Devices, GaitProblem
 from ergowalk.problem.devices import EasedDevice
 from ergowalk.solvers.ipopt import Ipopt
 from ergowalk.solving.stages import SEARCH_BARRIER, OrderSearch, StageResult, Start
 from ergowalk.transcription.curves import Guess, Samples
 from ergowalk.transcription.guess import with_devices
+from ergowalk.transcription.halves import in_phases
 from ergowalk.transcription.motion import body_motion, device_moment
 from ergowalk.transcription.perturbation import Perturbation
 
@@ -30,7 +30,7 @@ PRICES = (1.0, 30.0, 1000.0)
 
 def needs_easing(problem: GaitProblem) -> bool:
     """Whether a device leaves no room for an own moment."""
-    return any(isinstance(d, EasedDevice) for _, d in problem.devices.eased().items())
+    return any(isinstance(d, EasedDevice) for d in problem.devices.eased().everything())
 
 
 def eased(search: OrderSearch, perturbation: Perturbation | None = None) -> StageResult:
@@ -39,11 +39,7 @@ def eased(search: OrderSearch, perturbation: Perturbation | None = None) -> Stag
     bare = _search(search, problem.replace(devices=Devices()))
     result = bare.fixed_rhythm(bare.fit(), perturbation)
     for i, price in enumerate(PRICES):
-        helped = {
-            joint: d.replace(help_price=price) if isinstance(d, EasedDevice) else d
-            for joint, d in problem.devices.eased().items()
-        }
-        stage = _search(search, problem.replace(devices=problem.devices.replace(**helped)))
+        stage = _search(search, problem.replace(devices=helped(problem.devices, price)))
         mesh, words = result.collocation.mesh, f"devices helped at {price:g}"
         if i == 0:
             start = Start(fitted(stage, bare, result), result.trajectory.times)
@@ -57,23 +53,36 @@ def eased(search: OrderSearch, perturbation: Perturbation | None = None) -> Stag
     return search.stage("devices alone", result.collocation.mesh, start)
 
 
+def helped(devices: Devices, price: float) -> Devices:
+    """The devices with the help of the walker at a price."""
+    return devices.eased().changed(
+        lambda d: d.replace(help_price=price) if isinstance(d, EasedDevice) else d
+    )
+
+
 def fitted(search: OrderSearch, before: OrderSearch, result: StageResult) -> Guess:
     """The curves of a stage ``before``, its joint moments divided anew for the devices now."""
-    phases, curves = half_stride_phases(search.order), result.trajectory.as_guess()
+    curves = result.trajectory.as_guess()
+    here, there = (
+        [(walker, phase) for _, walker, phase, _ in in_phases(s.halves, result.trajectory)]
+        for s in (search, before)
+    )
 
     def guess(i: int, fractions: Array) -> Samples:
-        samples, phase = curves(i, fractions), phases[i]
-        motion = body_motion(search.walker, phase, samples)
+        samples, (walker, phase), earlier = curves(i, fractions), here[i], there[i][0]
+        motion = body_motion(walker, phase, samples)
         total = dict(samples.control)
         for role, contact in enumerate(phase.legs):
-            for joint, _ in before.walker.fittings.acting(role, contact):
+            for joint, _ in earlier.fittings.acting(role, contact):
                 name = f"{joint}_{role + 1}"
-                device = device_moment(before.walker, phase, samples, motion, role, joint)
+                device = device_moment(earlier, phase, samples, motion, role, joint)
                 total[name] = total.get(name, 0.0) + device
-        return with_devices(search.walker, phase, replace(samples, control=total), motion)
+        return with_devices(walker, phase, replace(samples, control=total), motion)
 
     return guess
 
 
 def _search(search: OrderSearch, problem: GaitProblem) -> OrderSearch:
-    return OrderSearch(problem, search.order, search.walker.smoothing, search.effort, search.report)
+    return OrderSearch(
+        problem, search.orders, search.walker.smoothing, search.effort, search.report
+    )

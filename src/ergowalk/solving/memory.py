@@ -44,7 +44,7 @@ def remember(dataset: xr.Dataset, search: OrderSearch, result: StageResult) -> x
     mesh = {
         "points": result.points,
         "fractions": [edges.tolist() for edges in result.collocation.mesh],
-        "order": str(search.order),
+        "order": search.name,
         "smoothing": vars(search.walker.smoothing),
         "objective": minimum.objective,
         "signature": result.collocation.signature,
@@ -67,8 +67,9 @@ def recall(solution: Solution) -> tuple[OrderSearch, StageResult]:
             "solve it by collocation with this version, then ask again",
             field=AT_ROWS,
         )
-    order, smoothing = PhaseOrder(mesh["order"]), Smoothing(**mesh["smoothing"])
-    search = OrderSearch(solution.problem, order, smoothing, Effort(), None)
+    orders = tuple(PhaseOrder(name) for name in mesh["order"].split(" and "))
+    smoothing = Smoothing(**mesh["smoothing"])
+    search = OrderSearch(solution.problem, orders, smoothing, Effort(), None)
     stage = _stage(solution, mesh, search)
     if stage is None:
         raise GaitFileError(
@@ -86,7 +87,7 @@ def recall_for(solution: Solution, search: OrderSearch, points: int) -> StageRes
     None unless that problem has the same unknowns and rows, so that multipliers mean the same.
     """
     mesh = _mesh(solution)
-    if mesh is None or mesh["order"] != str(search.order) or mesh["points"] != points:
+    if mesh is None or mesh["order"] != search.name or mesh["points"] != points:
         return None
     stage = _stage(solution, mesh, search)
     same = stage is not None and stage.collocation.signature == mesh.get("signature")
@@ -122,7 +123,6 @@ def _stage(solution: Solution, mesh: dict[str, Any], search: OrderSearch) -> Sta
         build_time=0.0,
         solve_time=0.0,
     )
-    problem = solution.problem
-    work = minimum.objective * problem.body.total_mass
-    energy = energy_per_metre(work, problem.step_length_m)
+    work = minimum.objective * solution.problem.body.total_mass
+    energy = energy_per_metre(work, search.distance)
     return StageResult(collocation, collocation.unpack(x), minimum, energy)

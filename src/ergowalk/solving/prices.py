@@ -22,6 +22,7 @@ from ergowalk.solvers.ipopt import Minimum
 from ergowalk.solving.memory import recall
 from ergowalk.solving.stages import OrderSearch, StageResult
 from ergowalk.transcription.collocation import Collocation
+from ergowalk.transcription.halves import in_phases
 from ergowalk.transcription.walking import walking_problem
 from ergowalk.values import Value
 
@@ -77,11 +78,15 @@ class CorridorPrices:
 
 @dataclass(frozen=True)
 class Prices:
-    """The price list of a gait: given numbers, dearest first, and corridor edges."""
+    """The price list of a gait: given numbers, dearest first, and corridor edges.
+
+    The edges are those of both legs; of leg 1 where leg 2 has its own.
+    """
 
     energy_per_metre: float
     numbers: tuple[Price, ...]
     corridors: CorridorPrices
+    corridors_leg_2: CorridorPrices | None = None
 
 
 def prices(solution: Solution) -> Prices:
@@ -99,7 +104,7 @@ def prices(solution: Solution) -> Prices:
         if slope is not None:
             found.append(Price(name, value, slope, slope * value / solution.energy_per_metre))
     found.sort(key=lambda price: -abs(price.elasticity))
-    return Prices(solution.energy_per_metre, tuple(found), corridor_prices(search, result))
+    return Prices(solution.energy_per_metre, tuple(found), *corridor_prices(search, result))
 
 
 def price_of(solution: Solution, name: str) -> float:
@@ -197,14 +202,15 @@ class _Optimum:
         The point and the multipliers are those of the optimum, everything given is the problem's.
         """
         walker, minimum = self.search.walker, self.minimum
-        phased = walking_problem(problem, self.search.order, walker.smoothing)
+        phased = walking_problem(problem, self.search.orders, walker.smoothing)
         programme = Collocation(phased, self.result.collocation.mesh, self.result.points).programme
         total, rows = programme.evaluate(minimum.x)
         total += _pressed(minimum.row_multipliers, rows, *programme.row_bounds)
         bounds = programme.lower, programme.upper
         total += _pressed(minimum.variable_multipliers, minimum.x, *bounds)
         mass = problem.body.total_mass
-        energy: float = energy_per_metre(total * mass, problem.step_length_m)
+        distance = len(self.search.halves) * problem.step_length_m
+        energy: float = energy_per_metre(total * mass, distance)
         return energy
 
 
@@ -230,44 +236,55 @@ def _pressed(multipliers: Array, values: Array, lower: Array, upper: Array) -> f
     return float(multipliers[finite] @ (values - bound)[finite])
 
 
-def corridor_prices(search: OrderSearch, result: StageResult) -> CorridorPrices:
-    """Price of every corridor edge, element by element, over the stride of leg 1.
+def corridor_prices(search: OrderSearch, result: StageResult) -> tuple[CorridorPrices, ...]:
+    """Price of every corridor edge, element by element, over the stride of a leg.
 
-    Leg 2 in [0, T/2] is leg 1 half a stride later.
+    Where the legs mirror each other leg 2 in [0, T/2] is leg 1 half a stride later; else leg 1 and
+    leg 2 have their own.
     """
-    collocation, curves = result.collocation, result.trajectory
-    stride, rows = search.problem.stride_time_s, result.minimum.row_multipliers
-    edges = search.walker.corridor_curves
-    parts: list[tuple[float, float, dict[str, tuple[float, float]]]] = []
+    collocation, rows = result.collocation, result.minimum.row_multipliers
+    stride = search.problem.stride_time_s
+    unit = energy_per_metre(search.walker.mass, search.distance)
+    parts: tuple[list[_Element], ...] = tuple([] for _ in search.halves)
     first = 0
-    for kernel, mesh, phase in zip(
-        collocation.kernels, collocation.mesh, curves.phases, strict=True
+    for kernel, mesh, (half, walker, _, curves) in zip(
+        collocation.kernels,
+        collocation.mesh,
+        in_phases(search.halves, result.trajectory),
+        strict=True,
     ):
         n_e, n_g = len(mesh) - 1, len(kernel.labels)
         own = rows[first : first + n_e * n_g].reshape(n_e, n_g)
         first += n_e * n_g
         places = np.where(np.isnan(kernel.places), 0.5, kernel.places)
-        starts, widths = phase.start + phase.duration * mesh[:-1], phase.duration * np.diff(mesh)
-        time = starts[:, None] + widths[:, None] * places
-        half = edges.at(time.ravel())
-        for leg, shift in ((1, 0.0), (2, 0.5)):
-            found = {}
-            for joint in ANGLES:
-                mine = np.array([label == f"corridor {joint} {leg} (6)" for label in kernel.labels])
-                width = np.degrees(half[f"{joint}_{leg} half width"].reshape(n_e, n_g))
+        starts, widths = curves.start + curves.duration * mesh[:-1], curves.duration * np.diff(mesh)
+        for role, since in enumerate((0.0, walker.steps.other)):
+            leg = (role + search.halves.index(half)) % len(parts)
+            prices = {}
+            fraction = (starts[:, None] + widths[:, None] * places + since) / stride
+            for joint, corridor in walker.corridors[role].items():
+                label = f"corridor {joint} {role + 1} (6)"
+                mine = np.array([name == label for name in kernel.labels])
+                width = np.degrees(corridor.width * corridor.sd(fraction))
                 price = np.where(mine, own / width, 0.0)  # J/kg per degree
-                found[joint] = [np.maximum(sign * price, 0.0).sum(axis=1) for sign in (-1, 1)]
+                prices[joint] = [np.maximum(sign * price, 0.0).sum(axis=1) for sign in (-1, 1)]
             for k in range(n_e):
-                at = ((starts[k] + widths[k] / 2) / stride + shift) % 1.0
-                parts.append(
-                    (at, widths[k] / stride, {j: (s[0][k], s[1][k]) for j, s in found.items()})
-                )
-    parts.sort(key=lambda part: part[0])
+                at = ((starts[k] + widths[k] / 2 + since) / stride) % 1.0
+                edges = {j: (low[k], high[k]) for j, (low, high) in prices.items()}
+                parts[leg].append((at, widths[k] / stride, edges))
+    return tuple(_over_the_stride(part, unit) for part in parts)
+
+
+_Element = tuple[float, float, dict[str, tuple[float, float]]]
+"""Middle and length over the stride, and prices of both edges by joint [J/kg per degree]."""
+
+
+def _over_the_stride(parts: list[_Element], unit: float) -> CorridorPrices:
+    parts = sorted(parts, key=lambda part: part[0])
     width = np.array([part[1] for part in parts])
-    unit = energy_per_metre(search.walker.mass, search.problem.step_length_m) / (100 * width)
-    return CorridorPrices(
-        np.array([part[0] for part in parts]),
-        width,
-        {j: unit * np.array([part[2][j][0] for part in parts]) for j in ANGLES},
-        {j: unit * np.array([part[2][j][1] for part in parts]) for j in ANGLES},
+    factor = unit / (100 * width)
+    lower, upper = (
+        {j: factor * np.array([part[2][j][edge] for part in parts]) for j in ANGLES}
+        for edge in (0, 1)
     )
+    return CorridorPrices(np.array([part[0] for part in parts]), width, lower, upper)

@@ -31,7 +31,7 @@ def refine(coarse: Candidate, check_before: MeshCheck | None) -> Gait:
     for _ in range(ROUNDS):
         if residuals.largest <= 1.0 or final.result.elements > MOST_ELEMENTS:
             break
-        energy = energy_per_metre(residuals.work, search.problem.step_length_m)
+        energy = energy_per_metre(residuals.work, search.distance)
         history.append(record(final.result, energy))
         mesh = cut(final.result.collocation.mesh, residuals.errors)
         final = Candidate(search, search.refined(final.result, mesh, residuals.largest))

@@ -84,7 +84,7 @@ def finished(answer: SplineAnswer, solver: str, options: SplineOptions) -> Solut
     dataset = describe(
         dataset,
         problem,
-        programme.rhythm,
+        (programme.rhythm,),
         energy=dense_energy(dataset, problem.step_length_m),
         method="spline",
         status=_status(answer, options),

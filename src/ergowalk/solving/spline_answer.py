@@ -48,7 +48,7 @@ def dense_curves(programme: SplineProgramme, unknowns: Array) -> tuple[xr.Datase
         Piece(p.time, p.contacts, p.motion, p.sharing)
         for p in programme.pieces(unknowns, programme.problem.stride_time_s / 800)
     ]
-    dataset = stride_dataset(programme.problem, pieces)
+    dataset = stride_dataset(programme.problem, [pieces])
     return dataset, dense_energy(dataset, programme.problem.step_length_m)
 
 

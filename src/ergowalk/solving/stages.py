@@ -19,13 +19,13 @@ from ergowalk.transcription.guess import (
     starting_rhythm,
     starting_times,
 )
+from ergowalk.transcription.halves import Orders, halves_of, mesh_of
 from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.layout import Mesh
-from ergowalk.transcription.mesh import walking_mesh
 from ergowalk.transcription.perturbation import Perturbation
 from ergowalk.transcription.phases import PhasedProblem
 from ergowalk.transcription.residuals import Residuals, mesh_residuals
-from ergowalk.transcription.walker import Smoothing, Walker
+from ergowalk.transcription.walker import Smoothing
 from ergowalk.transcription.walking import kinematic_problem, walking_problem
 
 POINTS = 3
@@ -43,6 +43,11 @@ bounds, far above it the curves are not yet those of a gait."""
 
 LARGE_ERROR = 5.0
 """Error of a mesh from which the solver starts further from the bounds."""
+
+
+def orders_in_words(orders: Orders) -> str:
+    """One order, or that of both halves."""
+    return " and ".join(str(order) for order in orders)
 
 
 @dataclass
@@ -72,7 +77,7 @@ class StageResult:
 
     @property
     def elements(self) -> int:
-        """Elements of the half stride."""
+        """Elements of the halves that are solved."""
         return self.collocation.elements
 
     @property
@@ -96,23 +101,39 @@ class Start:
 
 
 class OrderSearch:
-    """All stages for one phase order of one problem."""
+    """All stages for one phase order of one problem, or one order for each half of its stride."""
 
     def __init__(
         self,
         problem: GaitProblem,
-        order: PhaseOrder,
+        orders: Orders,
         smoothing: Smoothing,
         effort: Effort,
         report: Report | None,
         store: KernelStore | None = None,
     ) -> None:
-        self.problem, self.order, self.effort, self.report = problem, order, effort, report
+        self.problem, self.orders, self.effort, self.report = problem, orders, effort, report
         began = time.process_time()
-        self.walker = Walker(problem, smoothing)
-        self.phased = walking_problem(problem, order, smoothing)
+        self.halves = halves_of(problem, orders, smoothing)
+        self.walker = self.halves[0].walker
+        self.phased = walking_problem(problem, orders, smoothing)
         self.store = KernelStore() if store is None else store
         effort.build_time += time.process_time() - began
+
+    @property
+    def order(self) -> PhaseOrder:
+        """Order of the phases of the first half."""
+        return self.orders[0]
+
+    @property
+    def name(self) -> str:
+        """The orders in words."""
+        return orders_in_words(self.orders)
+
+    @property
+    def distance(self) -> float:
+        """How far the halves that are solved lead [m]."""
+        return len(self.halves) * self.problem.step_length_m
 
     def fit(self) -> Trajectory:
         """The motion nearest to the human means that stands on the ground, rhythm as printed."""
@@ -142,12 +163,14 @@ class OrderSearch:
         mesh = self._mesh(start.times, COARSE)
         return self._run("from a gait", self.phased, mesh, start, _warm(1e-4, 1e-3))
 
-    def continued(self, before: StageResult, times: Mapping[str, float]) -> StageResult:
+    def continued(
+        self, before: StageResult, times: Mapping[str, float], shared: Mapping[str, float]
+    ) -> StageResult:
         """From the point and the multipliers of a neighbour's gait, on its mesh.
 
         ``before`` stands in the unknowns of this search.
         """
-        start = Start(before.trajectory.as_guess(), times)
+        start = Start(before.trajectory.as_guess(), times, shared)
         solver = _warm(1e-6, 1e-6)
         return self._solve("from a gait", before.collocation, start, solver, before)
 
@@ -206,10 +229,10 @@ class OrderSearch:
 
     def residuals(self, result: StageResult) -> Residuals:
         """What the mesh leaves undone between its nodes."""
-        return mesh_residuals(self.walker, self.order, result.trajectory)
+        return mesh_residuals(self.halves, result.trajectory)
 
     def _mesh(self, times: Mapping[str, float], level: float) -> Mesh:
-        return walking_mesh(self.order, times, self.problem.stride_time_s, level)
+        return mesh_of(self.halves, times, self.problem.stride_time_s, level)
 
     def _run(
         self,
@@ -253,13 +276,13 @@ class OrderSearch:
         )
 
     def _energy(self, objective: float) -> float:
-        energy: float = energy_per_metre(objective * self.walker.mass, self.problem.step_length_m)
+        energy: float = energy_per_metre(objective * self.walker.mass, self.distance)
         return energy
 
     def _monitor(self, stage: str, elements: int):  # type: ignore[no-untyped-def]
         if self.report is None:
             return None
-        report, words = self.report, f"{self.order}, {stage}, {elements} elements"
+        report, words = self.report, f"{self.name}, {stage}, {elements} elements"
 
         def monitor(iteration: int, objective: float, violation: float) -> None:
             elapsed = time.monotonic() - self.effort.began

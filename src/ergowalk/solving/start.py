@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ergowalk.gait.footprints import trailing_print
-from ergowalk.gait.rhythm import (
-    PhaseOrder,
-    Rhythm,
-    boundary_fractions,
-    half_stride_phases,
-)
+from ergowalk.gait.rhythm import PhaseOrder, half_stride_phases
 from ergowalk.problem import JOINTS, GaitProblem
 from ergowalk.quantities import SEGMENTS
 from ergowalk.solution import Solution
 from ergowalk.transcription.curves import Guess, Samples
 from ergowalk.transcription.guess import with_devices
+from ergowalk.transcription.halves import Half, Orders
 from ergowalk.transcription.motion import body_motion
-from ergowalk.transcription.walker import SHARING, Smoothing, Walker
+from ergowalk.transcription.steps import STEP_1
+from ergowalk.transcription.walker import SHARING, Walker
 
 Array = NDArray[np.float64]
 
@@ -33,53 +30,105 @@ KINDS = ("angle", "angular_velocity", "angular_acceleration")
 
 @dataclass(frozen=True)
 class StartingGait:
-    """A gait to begin with; its phases are those of its own rhythm, whatever the problem's."""
+    """A gait to begin with; its phases are those of its own rhythm, whatever the problem's.
+
+    A gait whose legs mirror each other serves for both halves of a stride.
+    """
 
     gait: Solution
-
-    @property
-    def order(self) -> PhaseOrder:
-        """The order of its phases."""
-        return self.gait.rhythm.order
 
     @property
     def stride_time(self) -> float:
         """Its T [s]."""
         return float(self.gait.dataset.attrs["stride_time"])
 
-    def times(self, problem: GaitProblem) -> dict[str, float] | None:
+    def orders(self, problem: GaitProblem) -> Orders | None:
+        """The orders of its phases in the halves of a problem; None where that excludes them."""
+        found = tuple(self._order(half) for half in range(1 + problem.full_stride))
+        return found if set(found) <= set(problem.rhythm.orders()) else None
+
+    def times(self, problem: GaitProblem, halves: Sequence[Half]) -> dict[str, float] | None:
         """Its boundary instants [s] in a problem's stride and inside its bounds.
 
-        None where the problem excludes the order of its phases.
+        None where a phase would have no room.
         """
-        if self.order not in problem.rhythm.orders():
-            return None
-        own, inside = self.gait.rhythm, {}
-        for name in ("heel_end", "heel_off", "toe_off"):
-            low, high = problem.rhythm.bounds(name)
-            inside[name] = min(max(getattr(own, name), low), high)
-        rhythm = Rhythm(**inside)
-        fractions = boundary_fractions(rhythm)
-        phases = half_stride_phases(self.order)
-        if any(fractions[p.start] >= fractions[p.end] for p in phases):
-            return None
-        return {name: f * problem.stride_time_s for name, f in fractions.items()}
+        found: dict[str, float] = {}
+        for i, half in enumerate(halves):
+            fractions = self._fractions(i, (problem, len(halves)))
+            if any(fractions[p.start] >= fractions[p.end] for p in half.phases):
+                return None
+            stride = problem.stride_time_s
+            found |= {name + half.tag: f * stride for name, f in fractions.items()}
+        return found
 
-    def guess(self, problem: GaitProblem) -> Guess:
+    def shared(self, problem: GaitProblem) -> dict[str, float]:
+        """Its unknowns of no instant, for a problem whose legs have their own."""
+        if not problem.full_stride:
+            return {}
+        first, second = self.gait.step_lengths
+        return {STEP_1: 2 * problem.step_length_m * first / (first + second)}
+
+    def guess(self, problem: GaitProblem, halves: Sequence[Half]) -> Guess:
         """Its curves phase by phase, stretched to the stride time of a problem."""
-        phases, data, stride = half_stride_phases(self.order), self.gait.dataset, self.stride_time
-        fractions = boundary_fractions(self.gait.rhythm)
-        time = data["time"].to_numpy()
-        own, slower = self.gait.problem, stride / problem.stride_time_s
+        given = {**self.shared(problem), **(self.times(problem, halves) or {})}
+        slower = self.stride_time / problem.stride_time_s
+        each = [self._half(i, half.walker.at(given), slower) for i, half in enumerate(halves)]
+        count = len(halves[0].phases)
+        return lambda i, fractions: each[i // count](i % count, fractions)
+
+    def _order(self, half: int) -> PhaseOrder:
+        fractions = self._fractions(half)
+        first = fractions["other_toe_off"] <= fractions["heel_end"]
+        return PhaseOrder.TOE_OFF_FIRST if first else PhaseOrder.FLAT_FIRST
+
+    def _fractions(
+        self, half: int, inside: tuple[GaitProblem, int] | None = None
+    ) -> dict[str, float]:
+        """Boundary instants of a half over T, on its own clock; inside the bounds of a problem.
+
+        Of a problem with one half the legs mirror each other.
+        """
+        leads, trails = self.gait.rhythms[half], self.gait.rhythms[1 - half]
+        found = {n: getattr(leads, n) for n in ("heel_end", "heel_off")}
+        toe_off, lasts = trails.toe_off, leads.toe_tip_start
+        before = 1.0 - lasts
+        if inside is not None:
+            problem, count = inside
+            found = {n: _clamped(x, problem.rhythm_of(half).bounds(n)) for n, x in found.items()}
+            trailing = 1 - half if count > 1 else half
+            if count == 1:
+                lasts, before = 0.5, 0.5
+            toe_off = _clamped(toe_off, problem.rhythm_of(trailing).bounds("toe_off"))
+        return {
+            "heel_contact": 0.0,
+            **found,
+            "other_toe_off": toe_off - before,
+            "half_stride": lasts,
+        }
+
+    def _half(self, index: int, walker: Walker, slower: float) -> Guess:
+        """The curves of one half, legs in their roles, at rates so many times as high."""
+        phases, stride = half_stride_phases(self._order(index)), self.stride_time
+        data = self.gait.dataset
+        fractions, roles = self._fractions(index), [index, 1 - index]
+        contact = index * self.gait.rhythm.toe_tip_start * stride
+        time = data["time"].to_numpy() - contact
+        own = self.gait.problem
         mass = own.body.total_mass
-        tip = trailing_print(own.body.leg(0), own.step_length_m).toe_tip
+        step_1, step_2 = self.gait.step_lengths
+        behind, origin = (step_2, step_2) if index else (step_1, 0.0)
+        tip = origin + trailing_print(own.body.leg(roles[1]), behind).toe_tip
         trunk = [data[f"trunk_{k}"].to_numpy() for k in KINDS]
-        legs = [data[f"segment_{k}"].transpose("time", "leg", "segment").to_numpy() for k in KINDS]
-        moment = data["joint_moment"].transpose("time", "leg", "joint").to_numpy() / mass
-        force = data["ground_reaction_force"].transpose("time", "leg", "axis").to_numpy() / mass
-        pressure = data["center_of_pressure"].transpose("time", "leg").to_numpy()[:, 1]
+
+        def in_roles(name: str, dim: str) -> Array:
+            found: Array = data[name].transpose("time", "leg", dim).to_numpy()[:, roles]
+            return found
+
+        legs = [in_roles(f"segment_{k}", "segment") for k in KINDS]
+        moment = in_roles("joint_moment", "joint") / mass
+        force = in_roles("ground_reaction_force", "axis") / mass
+        pressure = data["center_of_pressure"].transpose("time", "leg").to_numpy()[:, roles[1]]
         shift = np.nan_to_num(pressure - tip)
-        walker = Walker(problem, Smoothing())
 
         def guess(i: int, parts: Array) -> Samples:
             start, end = (fractions[n] * stride for n in (phases[i].start, phases[i].end))
@@ -93,13 +142,13 @@ class StartingGait:
                 _angles(trunk[d], legs[d], curve, slower**d) for d in range(3)
             )
             control = {
-                f"{joint}_{leg + 1}": curve(moment[:, leg, j])
-                for leg in (0, 1)
+                f"{joint}_{role + 1}": curve(moment[:, role, j])
+                for role in (0, 1)
                 for j, joint in enumerate(JOINTS)
             }
             algebraic = {
-                f"reaction_{axis}_{leg + 1}": curve(force[:, leg, k])
-                for leg in (0, 1)
+                f"reaction_{axis}_{role + 1}": curve(force[:, role, k])
+                for role in (0, 1)
                 for k, axis in enumerate("xy")
             }
             for name in ("foot_2", "toes_2"):
@@ -121,6 +170,10 @@ def within(time: Array, start: float, end: float, slack: float) -> slice:
     first = int(np.searchsorted(time, start + slack, "right")) - 1
     last = int(np.searchsorted(time, end - slack, "left"))
     return slice(max(first, 0), min(last, len(time) - 1) + 1)
+
+
+def _clamped(value: float, bounds: tuple[float, float]) -> float:
+    return min(max(value, bounds[0]), bounds[1])
 
 
 def _angles(

@@ -127,7 +127,7 @@ def _check_objective(problem: GaitProblem, method: str) -> None:
             field="objective",
             value=problem.objective.sentence(),
         )
-    if method != "collocation" and any(problem.devices.items()):
+    if method != "collocation" and any(problem.devices.everything()):
         raise ProblemError(
             f"method {method!r} knows no devices",
             "leave out the table, or use method 'collocation'",

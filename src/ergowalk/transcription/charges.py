@@ -37,7 +37,7 @@ def charge_own_moments(
         if held is not None:
             paid.append(held.angle)
             charged.append(held.angle * (motion.legs[i].foot.rate - motion.legs[i].shank.rate))
-            _hold(walker, terms, held)
+            _hold(walker, terms, held, i)
         if objective.charges_work:
             terms.absolute += charged
     terms.integrand = terms.integrand + walker.fittings.help(phase, instant, motion)
@@ -46,9 +46,9 @@ def charge_own_moments(
         terms.integrand = terms.integrand + squares
 
 
-def _hold(walker: Walker, terms: Terms, held: Rotation) -> None:
+def _hold(walker: Walker, terms: Terms, held: Rotation, role: int) -> None:
     """Limits and cost of the own ankle moment that holds a device in swing, and of its rate."""
-    limits = walker.problem.limits
+    limits = walker.limits[role]
     strength = limits.moment_nm_per_kg.of("ankle")
     speed = limits.moment_rate_nm_per_kg_s.of("ankle")
     if strength is not None:

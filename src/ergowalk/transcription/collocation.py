@@ -42,7 +42,7 @@ class Collocation:
     ) -> None:
         self.problem, self.mesh, self.scheme = problem, mesh, GaussScheme(m)
         store = KernelStore() if store is None else store
-        self.kernels = tuple(store.kernel(p, problem, self.scheme) for p in problem.phases)
+        self.kernels = tuple(store.kernel(p, self.scheme) for p in problem.phases)
         n_abs = tuple(kernel.n_abs for kernel in self.kernels)
         self.layout: Layout = lay_out(problem, mesh, m, n_abs)
 

@@ -11,7 +11,11 @@ from ergowalk.transcription.phases import Instant, Link, Terms
 from ergowalk.transcription.walker import Walker
 
 NEXT = (Contact.TOE, Contact.HEEL)
-"""Contact of the leading and of the trailing leg at the start of the next half stride."""
+"""Contact of the leading and of the trailing leg at the start of the next half stride, in which
+they exchange their roles; a device stays with its leg."""
+
+BEFORE = (Contact.SWING, Contact.FOREFOOT)
+"""Contact of the leading and of the trailing leg at the end of the half stride before."""
 
 
 def fixed_moments(walker: Walker, phases: Sequence[Phase]) -> dict[tuple[str, str, str], float]:
@@ -31,11 +35,13 @@ def fixed_moments(walker: Walker, phases: Sequence[Phase]) -> dict[tuple[str, st
     fixed = {k: v for k, v in fixed.items() if _at(walker, phases, *k[:2])}
     for phase, after in zip(phases, (*phases[1:], None), strict=True):
         for role in (0, 1):
-            # at the end of the half stride the legs exchange their roles
             contact = NEXT[role] if after is None else after.legs[role]
-            other = 1 - role if after is None else role
-            if walker.fittings.devices:
-                fixed |= _giving_way(walker, phase, role, contact, other, after is None)
+            gone, come = _changing(walker, role, phase.legs[role], contact)
+            stays = gone if after is None else (*gone, *come)
+            fixed |= {(phase.end, name, "control"): 0.0 for name in stays}
+    for role, before in enumerate(BEFORE):
+        _, come = _changing(walker, role, before, phases[0].legs[role])
+        fixed |= {(phases[0].start, name, "control"): 0.0 for name in come}
     return fixed
 
 
@@ -52,24 +58,20 @@ def _at(walker: Walker, phases: Sequence[Phase], boundary: str, name: str) -> bo
     return any(name in set(_own_names(walker, phase)) for phase in near)
 
 
-def _giving_way(
-    walker: Walker, phase: Phase, role: int, contact: Contact, other: int, last: bool
-) -> dict[tuple[str, str, str], float]:
-    """Zero moments where an own moment begins or ends although the joint stays loaded."""
-    found = {}
-    before, after = LOADED_JOINTS[phase.legs[role]], LOADED_JOINTS[contact]
+def _changing(
+    walker: Walker, role: int, before: Contact, after: Contact
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Own moments of a leg that end, and those that begin, although the joint stays loaded."""
+    gone, come = [], []
     for joint in ("hip", "knee", "ankle"):
-        if joint not in before or joint not in after:
+        if joint not in LOADED_JOINTS[before] or joint not in LOADED_JOINTS[after]:
             continue
-        here = walker.fittings.own(role, joint, phase.legs[role])
-        # the device stays with its leg, which has the other role in the next half stride
-        there = walker.fittings.own(role, joint, contact)
+        here, there = (walker.fittings.own(role, joint, c) for c in (before, after))
         if here and not there:
-            found[phase.end, f"{joint}_{role + 1}", "control"] = 0.0
+            gone.append(f"{joint}_{role + 1}")
         elif there and not here:
-            boundary = "heel_contact" if last else phase.end
-            found[boundary, f"{joint}_{other + 1}", "control"] = 0.0
-    return found
+            come.append(f"{joint}_{role + 1}")
+    return tuple(gone), tuple(come)
 
 
 def _held(walker: Walker, phases: Sequence[Phase]) -> Iterator[tuple[str, int, str]]:

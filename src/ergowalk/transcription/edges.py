@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import casadi as ca
@@ -18,19 +18,24 @@ BAND = ("middle", "half width")
 """What is asked of a corridor."""
 
 
-def corridor_edges(corridors: Mapping[str, Corridor], stride: float) -> TimeCurves:
-    """Middle and half width [rad] of the corridors of both legs over a stride of so many seconds.
+def corridor_edges(
+    corridors: Sequence[Mapping[str, Corridor]], stride: float, shifts: Mapping[int, float]
+) -> TimeCurves:
+    """Middle and half width [rad] of the corridors of legs over a stride of so many seconds.
 
-    They are called "hip_1 middle", "hip_1 half width", and so on; leg 2 is half a stride later.
+    They are called "hip_1 middle", "hip_1 half width", and so on. ``corridors`` are those of leg 1
+    and 2; ``shifts`` say of which legs the edges are wanted, and by which share of the stride each
+    is ahead.
     """
     names, table = [], []
-    for joint, corridor in corridors.items():
-        for edge, curve, width in zip(
-            BAND, (corridor.mean, corridor.sd), (1.0, corridor.width), strict=True
-        ):
-            for leg in (1, 2):
+    for joint in corridors[0]:
+        for edge in BAND:
+            for leg, shift in shifts.items():
+                corridor = corridors[leg - 1][joint]
+                middle = edge == BAND[0]
+                curve, width = (corridor.mean, 1.0) if middle else (corridor.sd, corridor.width)
                 names.append(f"{joint}_{leg} {edge}")
-                table.append(width * curve.coefficients(0.5 * (leg - 1)))
+                table.append(width * curve.coefficients(shift))
     return fourier(tuple(names), np.array(table), stride)
 
 

@@ -124,7 +124,7 @@ def _angles(walker: Walker, s: Array, derivative: int) -> dict[str, Array]:
     out = {"trunk": np.zeros_like(s)}
     for leg, shift in ((1, 0.0), (2, 0.5)):
         hip, knee, ankle = (
-            walker.corridors[j].mean(s + shift, derivative) * factor
+            walker.corridors[leg - 1][j].mean(s + shift, derivative) * factor
             for j in ("hip", "knee", "ankle")
         )
         out[f"thigh_{leg}"], out[f"shank_{leg}"] = hip, hip - knee

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ergowalk.nlp import Kernel
 from ergowalk.transcription.functions import Call, CompiledFunction
-from ergowalk.transcription.phases import PhasedProblem, PhaseModel, TimeCurves
+from ergowalk.transcription.phases import PhaseModel, TimeCurves
 from ergowalk.transcription.rows import Rows
 from ergowalk.transcription.scheme import GaussScheme
 
@@ -38,14 +38,14 @@ class KernelStore:
     functions: dict[str, PhaseFunctions] = field(default_factory=dict)
     kernels: dict[tuple[str, int], PhaseKernel] = field(default_factory=dict)
 
-    def kernel(self, phase: PhaseModel, problem: PhasedProblem, scheme: GaussScheme) -> PhaseKernel:
+    def kernel(self, phase: PhaseModel, scheme: GaussScheme) -> PhaseKernel:
         """The kernel of a phase, built if it is not there yet."""
         key = (phase.name, scheme.m)
         if key not in self.kernels:
             if phase.name not in self.functions:
                 self.functions[phase.name] = compile_phase(phase)
             functions = self.functions[phase.name]
-            self.kernels[key] = phase_kernel(phase, problem, scheme, functions)
+            self.kernels[key] = phase_kernel(phase, scheme, functions)
         return self.kernels[key]
 
 
@@ -68,7 +68,6 @@ class PhaseKernel:
 
 def phase_kernel(
     phase: PhaseModel,
-    problem: PhasedProblem,
     scheme: GaussScheme,
     functions: PhaseFunctions | None = None,
 ) -> PhaseKernel:
@@ -95,7 +94,7 @@ def phase_kernel(
     rows.add_call(local.call(path_at_mesh, 0.0), 0.0)
     for place in (0.0, *BETWEEN, 1.0):
         rows.add_call(local.call(at_ends, place), place)
-    cost = cost + _control_rates(local, problem, rows)
+    cost = cost + _control_rates(local, rows)
     _control_bounds(local, rows)
     variables = ca.vertcat(local.variables, *slacks)
     kernel = Kernel(
@@ -278,7 +277,7 @@ def _control_bounds(local: _Local, rows: Rows) -> None:
             rows.add(middle / u.scale, ["control bounds"], bounds[0], bounds[1])
 
 
-def _control_rates(local: _Local, problem: PhasedProblem, rows: Rows) -> Any:
+def _control_rates(local: _Local, rows: Rows) -> Any:
     """Bounds on, and cost of, the slopes of the controls in this element.
 
     A slope is linear, so it is largest at an end; the integral of its square is exact by
@@ -287,9 +286,9 @@ def _control_rates(local: _Local, problem: PhasedProblem, rows: Rows) -> Any:
     cost: Any = 0.0
     for i, u in enumerate(local.phase.controls):
         start, middle, end = (local.slope(i, s) for s in (0.0, 0.5, 1.0))
-        if u.name in problem.control_rates:
-            bound = problem.control_rates[u.name]
+        if u.name in local.phase.control_rates:
+            bound = local.phase.control_rates[u.name]
             rows.add(ca.vertcat(start, end) / bound, ["moment rate"] * 2, -1.0, 1.0)
         square = (start**2 + 4 * middle**2 + end**2) / 6
-        cost = cost + problem.control_rate_cost.get(u.name, 0.0) * local.h * square
+        cost = cost + local.phase.control_rate_cost.get(u.name, 0.0) * local.h * square
     return cost

@@ -140,6 +140,10 @@ class PhaseModel:
     absolute_weights
         What the positive and the negative part of ``Terms.absolute`` are charged with; their sum
         is positive.
+    control_rates
+        Bound on |control'| by name, where there is one.
+    control_rate_cost
+        Weight of the integral of squared control rates, by name.
     """
 
     name: str
@@ -156,6 +160,8 @@ class PhaseModel:
     curves: tuple[TimeCurves, ...] = ()
     shared: tuple[Unknown, ...] = ()
     absolute_weights: tuple[float, float] = (1.0, 1.0)
+    control_rates: Mapping[str, float] = field(default_factory=dict)
+    control_rate_cost: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -181,6 +187,10 @@ class Join:
     names: Mapping[str, str]
 
 
+TimeRow = tuple[str, Mapping[str, float], float, float]
+"""(label, {boundary or shared unknown: factor}, lower, upper)."""
+
+
 @dataclass(frozen=True)
 class PhasedProblem:
     """Chains of phases with free boundary times, joined at their ends.
@@ -192,26 +202,19 @@ class PhasedProblem:
     times
         Bounds (lower, upper) of each boundary instant; equal bounds fix it.
     time_rows
-        (label, {boundary or shared unknown: factor}, lower, upper): linear constraints between
-        them.
+        Linear constraints between boundary instants and shared unknowns.
     joins
         Boundaries whose unknowns are one and the same, a periodic motion's first and last, say.
     fixed
         (boundary, name, "value" | "rate" | "control") -> number.
-    control_rates
-        Bound on |control'| by name, where there is one.
-    control_rate_cost
-        Weight of the integral of squared control rates, by name.
     shared
         Unknowns that belong to no instant.
     """
 
     phases: tuple[PhaseModel, ...]
     times: Mapping[str, tuple[float, float]]
-    time_rows: tuple[tuple[str, Mapping[str, float], float, float], ...]
+    time_rows: tuple[TimeRow, ...]
     joins: tuple[Join, ...]
     fixed: Mapping[tuple[str, str, str], float]
     links: tuple[Link, ...]
-    control_rates: Mapping[str, float]
-    control_rate_cost: Mapping[str, float]
     shared: tuple[Unknown, ...] = ()

@@ -8,6 +8,7 @@ above 1 it should be cut.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,13 +16,14 @@ from numpy.typing import NDArray
 
 from ergowalk.corridors import ANGLES
 from ergowalk.gait.loads import Loads, inverse_dynamics
-from ergowalk.gait.rhythm import Contact, Phase, PhaseOrder, half_stride_phases
+from ergowalk.gait.rhythm import Contact, Phase
 from ergowalk.mechanics.kinematics import BodyMotion, joint_angles
 from ergowalk.problem import constraints as c
 from ergowalk.problem.objective import eq10_joint_powers
 from ergowalk.quantities import JOINTS
 from ergowalk.transcription.curves import PhaseCurves, Samples, Trajectory, joined
 from ergowalk.transcription.devices import LOADED_JOINTS
+from ergowalk.transcription.halves import Half, in_phases
 from ergowalk.transcription.motion import (
     body_motion,
     device_moments,
@@ -62,7 +64,8 @@ class Residuals:
 
     ``errors`` has one array (n_elements,) per phase, each element's largest error as a multiple
     of what it is allowed; infinite where the curves are no numbers. ``work`` is the integral of
-    all absolute joint powers over the half stride [J], from the dense curves.
+    all absolute joint powers over the halves that are solved [J], from the dense
+    curves.
     """
 
     errors: tuple[Array, ...]
@@ -75,13 +78,13 @@ class Residuals:
 
 
 def mesh_residuals(
-    walker: Walker, order: PhaseOrder, trajectory: Trajectory, allowed: Allowance | None = None
+    halves: Sequence[Half], trajectory: Trajectory, allowed: Allowance | None = None
 ) -> Residuals:
     """Errors of every element, and the work on the dense curves."""
-    allowed, walker = allowed or Allowance(), walker.at(trajectory.shared)
+    allowed = allowed or Allowance()
     parts = [
         _PhaseErrors(walker, phase, curves)
-        for phase, curves in zip(half_stride_phases(order), trajectory.phases, strict=True)
+        for _, walker, phase, curves in in_phases(halves, trajectory)
     ]
     work = sum(float(np.sum(part.work)) for part in parts)
     return Residuals(tuple(part.largest(allowed, work) for part in parts), work)
@@ -135,11 +138,11 @@ class _PhaseErrors:
 
     def _forces(self) -> Array:
         """Excess over (8), the cap and the friction cone [body weights]."""
-        limits = self.walker.problem.limits
         weight = self.walker.mass * self.walker.gravity
-        cap, friction = limits.vertical_reaction_body_weights, limits.friction_coefficient
         worst = np.zeros_like(self.time)
         for i in self._standing():
+            limits = self.walker.limits[i]
+            cap, friction = limits.vertical_reaction_body_weights, limits.friction_coefficient
             force_x, force_y = (f / weight for f in self.loads.reactions[i])
             excess = [-force_y]
             if cap != "off":
@@ -177,14 +180,15 @@ class _PhaseErrors:
     def _angles(self) -> Array:
         """Distance of the joint angles from their corridors (6) [degrees]."""
         walker, worst = self.walker, np.zeros_like(self.time)
-        fraction = self.time / walker.problem.stride_time_s
+        stride = walker.problem.stride_time_s
+        since = (self.time, self.time + walker.steps.other)  # the heel contact of each leg
         for i, leg in enumerate(self.motion.legs):
             segments = (r.angle for r in (leg.thigh, leg.shank, leg.foot, leg.toes))
             angles = joint_angles(walker.legs[i], self.motion.trunk.angle, *segments)
             for name, angle in zip(ANGLES, angles, strict=False):
-                if walker.problem.corridors.width(name) is None:
+                if walker.asked[i].width(name) is None:
                     continue
-                corridor, place = walker.corridors[name], fraction + 0.5 * i
+                corridor, place = walker.corridors[i][name], since[i] / stride
                 outside = np.maximum(corridor.lower(place) - angle, angle - corridor.upper(place))
                 worst = np.maximum(worst, outside)
         return np.degrees(worst)

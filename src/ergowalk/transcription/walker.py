@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from copy import copy
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from ergowalk.body import LegParameters
-from ergowalk.corridors import ANGLES, Corridor
-from ergowalk.gait.footprints import leading_print, trailing_print
+from ergowalk.corridors import ANGLES
+from ergowalk.gait.footprints import Footprint, leading_print, trailing_print
 from ergowalk.gait.loads import vertical_share
 from ergowalk.gait.rhythm import Contact, Phase
 from ergowalk.mechanics.dynamics import (
@@ -48,6 +49,7 @@ from ergowalk.transcription.phases import (
     TimeCurves,
     Unknown,
 )
+from ergowalk.transcription.steps import Steps, UnequalSteps
 
 RATE, ACCELERATION, FORCE, METRE = 3.0, 30.0, 10.0, 0.1
 """Typical sizes by which unknowns and rows are divided (rad/s, rad/s2, N/kg, m)."""
@@ -75,17 +77,18 @@ class Smoothing:
 class Walker:
     """What all phases of a gait problem share, and the functions of an instant."""
 
-    def __init__(self, problem: GaitProblem, smoothing: Smoothing) -> None:
-        self.problem, self.smoothing = problem, smoothing
+    def __init__(
+        self, problem: GaitProblem, smoothing: Smoothing, unequal: UnequalSteps | None = None
+    ) -> None:
+        self.problem, self.smoothing, self.unequal = problem, smoothing, unequal
         self.small = smoothing.scaled(work_price(problem.objective))
         self.legs: tuple[LegParameters, LegParameters] = (problem.body.leg(0), problem.body.leg(1))
         self.mass, self.gravity = problem.body.total_mass, problem.body.gravity_m_s2
         self.coefficients: Coefficients = coefficients(problem.body)
-        self.corridors: dict[str, Corridor] = problem.angle_corridors()
-        self.prints = (
-            leading_print(self.legs[0]),
-            trailing_print(self.legs[1], problem.step_length_m),
-        )
+        self.corridors = (problem.angle_corridors(0), problem.angle_corridors(1))
+        self.asked = (problem.corridors_of(0), problem.corridors_of(1))
+        self.limits = (problem.limits_of(0), problem.limits_of(1))
+        self.steps = Steps.equal(problem)
         self.leg = self.legs[0]
         self.flats = tuple(HALF_PI - leg.foot_angle for leg in self.legs)
         self.flat = self.flats[0]
@@ -97,11 +100,25 @@ class Walker:
     @property
     def shared(self) -> tuple[Unknown, ...]:
         """Unknowns that belong to no instant."""
-        return ()
+        return () if self.unequal is None else self.unequal.unknowns
+
+    @property
+    def seen(self) -> tuple[Unknown, ...]:
+        """These, and instants of other phases, as the phases see them."""
+        return () if self.unequal is None else self.unequal.seen
 
     def at(self, shared: Mapping[str, Any]) -> Walker:
-        """The walker that has these values, symbols or numbers, of the unknowns of no instant."""
-        return self
+        """The walker that has these values, symbols or numbers, of what its phases see."""
+        if self.unequal is None:
+            return self
+        found = copy(self)
+        found.steps = self.unequal.given(shared)
+        return found
+
+    @property
+    def prints(self) -> tuple[Footprint, Footprint]:
+        """Where the leading and the trailing foot stand [m]."""
+        return leading_print(self.legs[0]), trailing_print(self.legs[1], self.steps.behind)
 
     def coordinates(self, phase: Phase) -> tuple[Coordinate, ...]:
         """Angles of this phase; a flat foot has none, a foot on its toe tip follows the ankle.
@@ -128,8 +145,8 @@ class Walker:
         if phase.legs[1] is Contact.TOE:
             names += ["ankle_2", "metatarsal_2"]
         names = [n for n in names if self._own(phase, n)]
-        limits = self.problem.limits.moment_nm_per_kg
-        bounds = {n: limits.of(n[:-2]) or np.inf for n in names}
+        strength = [limits.moment_nm_per_kg for limits in self.limits]
+        bounds = {n: strength[int(n[-1]) - 1].of(n[:-2]) or np.inf for n in names}
         return tuple(Unknown(n, -bounds[n], bounds[n]) for n in names)
 
     def _own(self, phase: Phase, name: str) -> bool:
@@ -138,11 +155,11 @@ class Walker:
 
     def algebraics(self, phase: Phase) -> tuple[Unknown, ...]:
         """Ground reactions and moments of locks per kg; the trailing foot on its toe tip."""
-        cap = self.problem.limits.vertical_reaction_body_weights
-        highest = np.inf if cap == "off" else cap * self.gravity
         unknowns = []
         for i, contact in enumerate(phase.legs, start=1):
             if contact is not Contact.SWING:
+                cap = self.limits[i - 1].vertical_reaction_body_weights
+                highest = np.inf if cap == "off" else cap * self.gravity
                 unknowns.append(Unknown(f"reaction_x_{i}", scale=FORCE))
                 unknowns.append(Unknown(f"reaction_y_{i}", 0.0, highest, FORCE))
         if phase.legs[1] is Contact.TOE:
@@ -192,7 +209,8 @@ class Walker:
         """(6) for every joint whose angle is known at this instant."""
         terms = Terms()
         for label, place in self.corridor_places(phase, instant, motion):
-            if self.problem.corridors.width(label.split()[1]) is not None:
+            _, joint, leg, _ = label.split()
+            if self.asked[int(leg) - 1].width(joint) is not None:
                 terms.between(label, place, -1.0, 1.0)
         return terms
 
@@ -216,9 +234,19 @@ class Walker:
         return places
 
     @cached_property
-    def corridor_curves(self) -> TimeCurves:
-        """Middle and half width of every corridor of both legs as functions of time [rad]."""
-        return corridor_edges(self.corridors, self.problem.stride_time_s)
+    def corridor_curves(self) -> tuple[TimeCurves, ...]:
+        """Middle and half width of every corridor of both legs as functions of time [rad].
+
+        The trailing leg met the ground as long before as the other half lasts.
+        """
+        stride = self.problem.stride_time_s
+        if self.unequal is None:
+            return (corridor_edges(self.corridors, stride, {1: 0.0, 2: 0.5}),)
+        trailing = corridor_edges(self.corridors, stride, {2: 0.0})
+        return (
+            corridor_edges(self.corridors, stride, {1: 0.0}),
+            replace(trailing, later=self.unequal.other_end),
+        )
 
     def clearance_rows(self, phase: Phase, instant: Instant, motion: BodyMotion) -> Terms:
         """(4): no point of a foot below the ground; (7): toes bend only upward."""
@@ -236,8 +264,9 @@ class Walker:
     def friction_rows(self, phase: Phase, instant: Instant) -> Terms:
         """Friction cone of each loaded foot."""
         terms = Terms()
-        coefficient, reactions = self.problem.limits.friction_coefficient, self.reactions(instant)
-        for contact, reaction in zip(phase.legs, reactions, strict=True):
+        reactions = self.reactions(instant)
+        for contact, reaction, limits in zip(phase.legs, reactions, self.limits, strict=True):
+            coefficient = limits.friction_coefficient
             if contact is not Contact.SWING and coefficient != "off":
                 cone = c.limit_friction(reaction, coefficient)
                 terms.nonnegative("friction", *(x / FORCE for x in cone))
@@ -379,7 +408,7 @@ class Walker:
         """(5) at T/2."""
         terms = Terms()
         motion = self.motion(Phase((Contact.FOREFOOT, Contact.SWING), "", ""), instant)
-        rest = c.eq5_landing(self.points(motion)[1], self.problem.step_length_m)
+        rest = c.eq5_landing(self.points(motion)[1], self.steps.ahead)
         terms.equal("landing (5)", *(e / METRE for e in rest[:2]), *rest[2:])
         return terms
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from ergowalk.gait.rhythm import BOUNDARIES, Contact, Phase, PhaseOrder, half_st
 from ergowalk.problem import JOINTS, GaitProblem
 from ergowalk.problem import constraints as c
 from ergowalk.transcription.device_links import device_links, fixed_moments
+from ergowalk.transcription.halves import Orders, halves_of, joined
 from ergowalk.transcription.phases import Instant, Join, Link, PhasedProblem, PhaseModel, Terms
 from ergowalk.transcription.walker import SHARING, Smoothing, Walker
 
@@ -18,15 +20,20 @@ FIT_ROUGHNESS = 1e-4
 
 
 def walking_problem(
-    problem: GaitProblem, order: PhaseOrder, smoothing: Smoothing | None = None
+    problem: GaitProblem, orders: Orders, smoothing: Smoothing | None = None
 ) -> PhasedProblem:
-    """Problem A in phases.
+    """Problem A in phases, over as many halves of the stride as there are phase orders.
 
     Coordinates: trunk, thighs, shanks, the leading foot unless flat, the trailing foot in swing.
     The hip follows from the contact of leg 1, so (4) holds by construction there. Controls are
     moments per kg.
     """
-    walker = Walker(problem, smoothing or Smoothing())
+    halves = halves_of(problem, orders, smoothing or Smoothing())
+    return joined(problem, [_half(half.walker, half.order) for half in halves])
+
+
+def _half(walker: Walker, order: PhaseOrder) -> PhasedProblem:
+    problem = walker.problem
 
     def model(phase: Phase) -> PhaseModel:
         def inside(instant: Instant) -> Terms:
@@ -60,16 +67,17 @@ def walking_problem(
             path,
             at_ends,
             path_everywhere=phase.legs[1] is Contact.TOE,
-            curves=(walker.corridor_curves,),
-            shared=walker.shared,
+            curves=walker.corridor_curves,
+            shared=walker.seen,
             absolute_weights=problem.objective.of_work,
+            **_rates(walker),
         )
 
     return _chain(walker, order, model, with_loads=True)
 
 
 def kinematic_problem(problem: GaitProblem, order: PhaseOrder) -> PhasedProblem:
-    """The motion alone: nearest to the human mean angles under all contact equations."""
+    """The motion of mirrored legs: nearest to the human means under all contact equations."""
     walker = Walker(problem, Smoothing())
 
     def model(phase: Phase) -> PhaseModel:
@@ -109,8 +117,7 @@ def kinematic_problem(problem: GaitProblem, order: PhaseOrder) -> PhasedProblem:
             inside,
             path,
             nothing,
-            curves=(walker.corridor_curves,),
-            shared=walker.shared,
+            curves=walker.corridor_curves,
         )
 
     return _chain(walker, order, model, with_loads=False)
@@ -128,7 +135,7 @@ def _chain(
     # Leg 1 stands on a known foot at t = 0 and so does leg 2 half a stride before: the trailing
     # foot's angle at 0 follows from the contact and is not an unknown there.
     own = {"foot_1", *SHARING}
-    if problem.limits.moment_rate_nm_per_kg_s.of("metatarsal") is None:
+    if walker.limits[0].moment_rate_nm_per_kg_s.of("metatarsal") is None:
         own.add("metatarsal_1")  # free to jump when the load passes to the toe tip
     exchange = c.eq2_exchange(tuple(sorted(names - own)))
     fixed = {
@@ -141,15 +148,10 @@ def _chain(
     if walker.linear_sharing and with_loads:
         fixed |= {("other_toe_off", n, "value"): 0.0 for n in SHARING}
     at_toe_off = next(p.legs[0] for p in phases if p.end == "other_toe_off")
-    limits = problem.limits
-    rates = {f"{j}_{i}": limits.moment_rate_nm_per_kg_s.of(j) for j in JOINTS for i in (1, 2)}
-    small, price = walker.small, problem.objective.moment_rate_squared_s3_per_m2
-    cost = dict.fromkeys(JOINTS, price + small.moment_rate)
-    cost["metatarsal"] = price + small.metatarsal_rate
     shortest = c.SHORTEST_PHASE * problem.stride_time_s
     return PhasedProblem(
         phases=models,
-        times=_time_bounds(problem),
+        times=_time_bounds(walker),
         time_rows=tuple(
             ("rhythm (3)", {later: 1.0, earlier: -1.0}, shortest, np.inf)
             for earlier, later in c.eq3_rhythm_order(order)
@@ -161,20 +163,37 @@ def _chain(
             Link("landing", "half_stride", lambda t: walker.at(t.shared).landing(t)),
             *(device_links(walker, phases) if with_loads else ()),
         ),
-        control_rates={n: r for n, r in rates.items() if r is not None},
-        control_rate_cost={f"{j}_{i}": cost[j] for j in JOINTS for i in (1, 2)},
         shared=walker.shared,
     )
 
 
-def _time_bounds(problem: GaitProblem) -> Mapping[str, tuple[float, float]]:
-    stride, rhythm = problem.stride_time_s, problem.rhythm
-    toe_off = rhythm.bounds("toe_off")
+def _rates(walker: Walker) -> dict[str, Any]:
+    """Bounds and costs of the rates of the walker's own moments, by name."""
+    names = [(j, i) for j in JOINTS for i in (1, 2)]
+    rates = {f"{j}_{i}": walker.limits[i - 1].moment_rate_nm_per_kg_s.of(j) for j, i in names}
+    small, price = walker.small, walker.problem.objective.moment_rate_squared_s3_per_m2
+    cost = dict.fromkeys(JOINTS, price + small.moment_rate)
+    cost["metatarsal"] = price + small.metatarsal_rate
+    return {
+        "control_rates": {n: r for n, r in rates.items() if r is not None},
+        "control_rate_cost": {f"{j}_{i}": cost[j] for j, i in names},
+    }
+
+
+def _time_bounds(walker: Walker) -> Mapping[str, tuple[float, float]]:
+    """Bounds of the boundary instants [s]; those of unequal legs depend on each other too."""
+    stride, rhythm = walker.problem.stride_time_s, walker.problem.rhythm_of(0)
+    if walker.unequal is None:
+        toe_off, end = rhythm.bounds("toe_off"), (0.5, 0.5)
+        leaves = (toe_off[0] - 0.5, toe_off[1] - 0.5)
+    else:
+        low, high = walker.unequal.duration
+        end, leaves = (low / stride, high / stride), (0.0, high / stride)
     fractions = {
         "heel_contact": (0.0, 0.0),
         "heel_end": rhythm.bounds("heel_end"),
-        "other_toe_off": (toe_off[0] - 0.5, toe_off[1] - 0.5),
+        "other_toe_off": leaves,
         "heel_off": rhythm.bounds("heel_off"),
-        "half_stride": (0.5, 0.5),
+        "half_stride": end,
     }
     return {n: (fractions[n][0] * stride, fractions[n][1] * stride) for n in BOUNDARIES}

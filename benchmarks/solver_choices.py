@@ -41,7 +41,7 @@ CHOICES: dict[str, Ipopt] = {
 def main() -> None:
     """Solve with every choice, print the table."""
     problem, order = ergowalk.preset("berbyuk2002"), PhaseOrder.FLAT_FIRST
-    search = OrderSearch(problem, order, Smoothing(), Effort(), None)
+    search = OrderSearch(problem, (order,), Smoothing(), Effort(), None)
     fit = search.fit()
     start = Start(loaded_guess(search.walker, order, fit), fit.times)
     phased, mesh = with_times(search.phased, fit.times), search._mesh(fit.times, COARSE)

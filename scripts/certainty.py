@@ -59,7 +59,7 @@ def _halved(search: OrderSearch, stage: StageResult) -> StageResult:
 
 
 def _energy(search: OrderSearch, stage: StageResult) -> float:
-    dataset = dense_gait(search.walker, search.order, stage.trajectory)
+    dataset = dense_gait(search.problem, search.halves, stage.trajectory)
     return dense_energy(dataset, search.problem.step_length_m)
 
 

@@ -25,6 +25,7 @@ import numpy as np
 import ergowalk
 from ergowalk.solving.start import StartingGait
 from ergowalk.transcription.guess import human_guess, starting_rhythm, starting_times
+from ergowalk.transcription.halves import halves_of
 from ergowalk.transcription.phases import Instant, PhasedProblem, PhaseModel, State, Terms
 from ergowalk.transcription.walker import Smoothing, Walker
 from ergowalk.transcription.walking import walking_problem
@@ -94,10 +95,10 @@ def _compiled(model: PhaseModel, ask: Callable[[Instant], Terms], *, inner: bool
     size = 2 * len(model.coordinates) + len(model.controls)
     time, column, slope = ca.SX.sym("t"), ca.SX.sym("x", size), ca.SX.sym("s", size)
     algebraics = ca.SX.sym("z", len(model.algebraics))
-    edges = ca.SX.sym("c", len(model.curves.names))
+    edges = ca.SX.sym("c", len(model.curves[0].names))
     coordinates, moments = _by_name(model, column, slope)
     named = {z.name: algebraics[i] for i, z in enumerate(model.algebraics)} if inner else {}
-    curves = dict(zip(model.curves.names, ca.vertsplit(edges), strict=True))
+    curves = dict(zip(model.curves[0].names, ca.vertsplit(edges), strict=True))
     terms = ask(Instant(time, coordinates, moments, named, curves=curves))
     rows = [ca.SX(row[1]) for row in terms.rows]
     function = ca.Function(
@@ -133,11 +134,11 @@ def pose(
     """
     (order,) = problem.rhythm.orders()
     smoothing = Smoothing()
-    walker, posed = Walker(problem, smoothing), walking_problem(problem, order, smoothing)
+    walker, posed = Walker(problem, smoothing), walking_problem(problem, (order,), smoothing)
     times = starting_times(problem, starting_rhythm(problem, order))
     guess = human_guess(walker, order, times)
     if gait is not None:
-        guess = StartingGait(gait).guess(problem)
+        guess = StartingGait(gait).guess(problem, halves_of(problem, (order,), smoothing))
     opti = ca.Opti()
     half = problem.stride_time_s / 2
     work, extra, smooth, phases = 0, 0, 0, []
@@ -175,8 +176,8 @@ def _phase(
         return _start(model, guess(i, np.array([fraction])))
 
     def curves(t: float) -> np.ndarray:
-        table = model.curves.at(np.array([t]))
-        return np.array([table[name][0] for name in model.curves.names])
+        table = model.curves[0].at(np.array([t]))
+        return np.array([table[name][0] for name in model.curves[0].names])
 
     none, still = np.zeros(len(model.algebraics)), np.zeros(size)
     left = opti.variable(size)
@@ -207,9 +208,9 @@ def _phase(
             smooth += h * weights[j] * _smooth_cost(model, inner[:, j], rates[:, j])
             for m, u in enumerate(model.controls):
                 rate = rates[2 * n + m, j]
-                extra += h * weights[j] * posed.control_rate_cost.get(u.name, 0.0) * rate**2
-                if u.name in posed.control_rates:
-                    bound = posed.control_rates[u.name]
+                extra += h * weights[j] * model.control_rate_cost.get(u.name, 0.0) * rate**2
+                if u.name in model.control_rates:
+                    bound = model.control_rates[u.name]
                     opti.subject_to(opti.bounded(-bound, rate, bound))
         left = opti.variable(size)
         opti.set_initial(left, first((k + 1) / count))
@@ -260,9 +261,10 @@ def _boundaries(
                 else:
                     here[key] = unknown
     first, last = known[phases[0].model.start], known[phases[-1].model.end]
+    exchange = posed.joins[0].names
     for (name, kind), unknown in last.items():
-        if name in posed.exchange and (posed.exchange[name], kind) in first:
-            opti.subject_to(unknown == first[posed.exchange[name], kind])
+        if (exchange.get(name), kind) in first:
+            opti.subject_to(unknown == first[exchange[name], kind])
     for (edge, name, kind), number in posed.fixed.items():
         opti.subject_to(known[edge][name, kind] == number)
     for link in posed.links:

@@ -104,9 +104,16 @@ class Body(Value):
         """The body with the legs exchanged."""
         return self._with_pairs(lambda pair: pair[::-1])
 
-    def mirrored(self) -> Self:
-        """The body with two equal legs, the mean of both."""
-        return self._with_pairs(lambda pair: sum(pair) / 2)
+    def mirrored(self, share: float = 0.0) -> Self:
+        """The body with two equal legs, the mean of both, or with a share of their difference."""
+
+        def nearer(pair: tuple[float, float]) -> float | tuple[float, float]:
+            mean = sum(pair) / 2
+            if share == 0:
+                return mean
+            return mean + share * (pair[0] - mean), mean + share * (pair[1] - mean)
+
+        return self._with_pairs(nearer)
 
     def _with_pairs(self, change: Callable[[tuple[float, float]], Any]) -> Self:
         pairs = {f: v for f in _LEG_FIELDS.values() if isinstance(v := getattr(self, f), tuple)}

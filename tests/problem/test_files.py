@@ -33,6 +33,7 @@ from ergowalk.problem.files import (
     problem_to_toml,
     read_problem,
 )
+from ergowalk.problem.legs import LEG_TABLES
 from ergowalk.values import Value
 
 MINIMAL = "step_length_m = 0.7\nstride_time_s = 1.1\n"
@@ -135,6 +136,7 @@ def test_the_file_has_the_agreed_keys_and_tables_in_order():
         "limits.moment_rate_nm_per_kg_s",
         "limits.moment_nm_per_kg",
         "objective",
+        "stride",
     ]
     assert tomllib.loads(text)["step_length_m"] == 0.76
     assert tomllib.loads(text)["stride_time_s"] == 1.14
@@ -143,8 +145,9 @@ def test_the_file_has_the_agreed_keys_and_tables_in_order():
 def test_every_default_is_filled_in():
     data = tomllib.loads(problem_to_toml(problem_from_toml(MINIMAL)))
     assert set(data["body"]) == set(SYMBOLS.values())
-    assert set(data["limits"]) == set(Limits.model_fields)
-    assert set(data["rhythm"]) == set(RhythmBounds.model_fields)
+    # of legs that do not differ nothing is said
+    assert set(data["limits"]) | set(LEG_TABLES) == set(Limits.model_fields)
+    assert set(data["rhythm"]) | set(LEG_TABLES) == set(RhythmBounds.model_fields)
     assert data["limits"]["moment_nm_per_kg"] == dict.fromkeys(JointBounds.model_fields, "off")
 
 
@@ -215,7 +218,12 @@ BAD = [
     ),
     ("step_lenght_m = 0.7\nstride_time_s = 1.1", "step_lenght_m: unknown key; .*step_length_m"),
     (MINIMAL + "[body]\nthigh_mass_kg = -8", r"body\.thigh_mass_kg = -8: .*greater than 0"),
-    (MINIMAL + "[body]\nthigh_mass_kg = [8, 9]", r"body\.legs = .*both legs must be equal"),
+    (MINIMAL + "[body]\nthigh_mass_kg = [8, 9]\n[stride]\nlegs = 'mirrored'", "the legs differ"),
+    (MINIMAL + "[stride]\nstep_time_asymmetry = 0.7", r"stride\.step_time.* between -0\.5 and 0"),
+    (MINIMAL + "[stride]\nstep_length_asymmetry = [0.1, -0.1]", "lower bound first"),
+    (MINIMAL + "[rhythm.leg_2]\nheel_off = 0.6", r"rhythm.*heel_off = 0\.6: must lie between"),
+    (MINIMAL + "[limits.leg_2]\nstrength = 1", r"limits\.leg_2\.strength: unknown key"),
+    (MINIMAL + "[devices.leg_3.knee]\nkind = 'free'", r"devices\.leg_3: unknown key"),
     (MINIMAL + "[body]\nheel_to_ankle_m = 0.5", "foot triangle cannot close.*give l_h between"),
     (MINIMAL + "[body]\ntrunk_inertia_kgm2 = 0.1", "mass matrix is not positive definite"),
     (MINIMAL + "[corridors]\nwidth_sd = 0", r"corridors\.width_sd = 0: .*greater than 0"),
@@ -293,7 +301,8 @@ def test_the_schema_knows_every_key_and_is_json():
     for table, keys in written.items():
         if isinstance(keys, dict):
             definition = schema["properties"][table]["$ref"].rsplit("/", 1)[1]
-            assert set(schema["$defs"][definition]["properties"]) == set(keys)
+            properties = set(schema["$defs"][definition]["properties"])
+            assert properties - set(LEG_TABLES) == set(keys)
 
 
 def test_the_schema_takes_every_written_file_and_no_unknown_key():

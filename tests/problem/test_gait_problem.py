@@ -159,10 +159,46 @@ def test_a_step_beyond_the_legs_is_refused():
         problem(step_length_m=1.8, body=legs)
 
 
-def test_unequal_legs_are_refused_and_equal_pairs_are_not():
-    assert problem(body=Body(foot_mass_kg=(1.2, 1.2))).body.leg(1).foot_mass == 1.2
-    with pytest.raises(ProblemError, match=r"body\.legs = .*both legs must be equal"):
-        problem(body={"foot_mass_kg": (1.2, 1.3)})
+def test_legs_that_differ_need_the_whole_stride_and_equal_pairs_do_not():
+    equal = problem(body=Body(foot_mass_kg=(1.2, 1.2)))
+    assert equal.body.leg(1).foot_mass == 1.2
+    assert not equal.full_stride
+    assert problem(body={"foot_mass_kg": (1.2, 1.3)}).full_stride
+    assert problem(devices={"leg_2": {"knee": {"kind": "free"}}}).full_stride
+    assert problem(stride={"legs": "each"}).full_stride
+    with pytest.raises(ProblemError, match=r"stride\.legs = 'mirrored': the legs differ"):
+        problem(body={"foot_mass_kg": (1.2, 1.3)}, stride={"legs": "mirrored"})
+
+
+def test_what_is_said_of_one_leg_holds_for_that_leg_alone():
+    both = problem(
+        limits={"friction_coefficient": 0.5, "leg_2": {"moment_nm_per_kg": {"ankle": 1.2}}},
+        rhythm={"leg_1": {"toe_off": 0.6}},
+        corridors={"leg_2": {"ankle_width_sd": "off"}},
+        devices={"hip": {"kind": "free"}, "leg_1": {"hip": {"kind": "locked"}}},
+    )
+    assert [both.limits_of(leg).moment_nm_per_kg.ankle for leg in (0, 1)] == ["off", 1.2]
+    assert [both.limits_of(leg).friction_coefficient for leg in (0, 1)] == [0.5, 0.5]
+    assert both.limits_of(1).moment_rate_nm_per_kg_s.ankle == 25.0
+    assert [both.rhythm_of(leg).bounds("toe_off") for leg in (0, 1)] == [(0.6, 0.6), (0.52, 0.66)]
+    assert [both.corridors_of(leg).width("ankle") for leg in (0, 1)] == [1.0, None]
+    kinds = [dict(both.devices_of(leg))["hip"].kind for leg in (0, 1)]
+    assert kinds == ["locked", "free"]
+    assert both.limits_of(0) == both.mirrored().limits
+    assert not both.mirrored().legs_differ
+
+
+def test_exchanging_the_legs_twice_changes_nothing():
+    both = problem(
+        body={"foot_mass_kg": (1.2, 1.3)},
+        rhythm={"leg_1": {"toe_off": 0.6}},
+        stride={"step_length_asymmetry": (-0.02, 0.1)},
+    )
+    other = both.exchanged()
+    assert other.body.foot_mass_kg == (1.3, 1.2)
+    assert other.rhythm_of(1).bounds("toe_off") == (0.6, 0.6)
+    assert other.stride.bounds("length") == (-0.1, 0.02)
+    assert other.exchanged() == both
 
 
 def test_corridors_follow_source_and_width():

@@ -61,7 +61,7 @@ def motion(t: Array) -> BodyMotion:
 
 def dataset() -> xr.Dataset:
     """The stride with the attributes that make it a gait file."""
-    stride = stride_dataset(PROBLEM, pieces())
+    stride = stride_dataset(PROBLEM, [pieces()])
     energy = sum(joint_energies(stride).values()) / (2 * PROBLEM.step_length_m)
     return stride.assign_attrs(
         energy_per_metre=energy,

@@ -19,7 +19,7 @@ STEP = PROBLEM.step_length_m
 
 @pytest.fixture(scope="module")
 def stride() -> xr.Dataset:
-    return stride_dataset(PROBLEM, pieces())
+    return stride_dataset(PROBLEM, [pieces()])
 
 
 def halves(stride: xr.Dataset, name: str) -> tuple[np.ndarray, np.ndarray]:

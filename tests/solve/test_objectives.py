@@ -34,7 +34,7 @@ def programme_value(gait: Solution, objective: Objective) -> float:
     _, result = recall(gait)
     problem = FIXED.replace(objective=objective)
     (order,) = problem.rhythm.orders()
-    phased = walking_problem(problem, order, NOTHING_ELSE)
+    phased = walking_problem(problem, (order,), NOTHING_ELSE)
     collocation = Collocation(phased, result.collocation.mesh, result.points)
     value, _ = collocation.programme.evaluate(result.minimum.x)
     return float(energy_per_metre(value * problem.body.total_mass, problem.step_length_m))
@@ -70,7 +70,7 @@ def test_squared_moments_alone_need_no_slacks(gait: Solution) -> None:
     )
     assert problem.well_posed
     search, result = recall(gait)
-    phased = walking_problem(problem, search.order)
+    phased = walking_problem(problem, search.orders)
     collocation = Collocation(phased, result.collocation.mesh, result.points)
     assert "power slacks" in result.collocation.programme.labels
     assert "power slacks" not in collocation.programme.labels

@@ -32,7 +32,7 @@ class Priced:
     def again(self, problem: GaitProblem) -> float:
         """Least objective [J/m] of another problem on the same mesh."""
         search = OrderSearch(
-            problem, self.search.order, self.search.walker.smoothing, Effort(), None
+            problem, self.search.orders, self.search.walker.smoothing, Effort(), None
         )
         before = self.result
         solver = Ipopt(tolerance=1e-8, strategy="monotone", barrier_start=1e-7, push=1e-5)
@@ -127,11 +127,13 @@ def test_multipliers_of_another_problem_are_refused(priced: Priced) -> None:
 
 
 def test_a_stage_is_recalled_for_a_problem_with_the_same_rows_only(priced: Priced) -> None:
-    problem, order = priced.gait.problem, priced.search.order
+    problem, orders = priced.gait.problem, priced.search.orders
     smoothing = priced.search.walker.smoothing
 
     def recalled(other: GaitProblem, points: int = 3) -> StageResult | None:
-        return recall_for(priced.gait, OrderSearch(other, order, smoothing, Effort(), None), points)
+        return recall_for(
+            priced.gait, OrderSearch(other, orders, smoothing, Effort(), None), points
+        )
 
     moved = recalled(problem.replace(step_length_m=0.77))
     assert moved is not None

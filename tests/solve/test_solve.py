@@ -25,7 +25,7 @@ from ergowalk.solution.progress import Report
 from ergowalk.solvers.ipopt import Ipopt
 from ergowalk.solving import SplineOptions, stages, verb
 from ergowalk.solving.stages import with_times
-from ergowalk.transcription import motion
+from ergowalk.transcription import halves, motion
 from ergowalk.transcription.layout import Mesh
 from ergowalk.transcription.mesh import walking_mesh
 from ergowalk.transcription.walking import Smoothing, walking_problem
@@ -42,7 +42,7 @@ def hurried(problem: GaitProblem, progress: Report | None = None) -> Solution:
     """The answer when every stage stops after four iterations on a very coarse mesh."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(stages, "Ipopt", partial(Ipopt, max_iterations=4))
-        patch.setattr(stages, "walking_mesh", coarse_mesh)
+        patch.setattr(halves, "walking_mesh", coarse_mesh)
         return verb.solve(problem, progress=progress)
 
 
@@ -282,7 +282,7 @@ def test_legs_repeat_each_other_half_a_stride_later(paper_gait: xr.Dataset) -> N
 
 
 def test_times_can_be_held() -> None:
-    phased = walking_problem(FIXED, PhaseOrder.TOE_OFF_FIRST, Smoothing())
+    phased = walking_problem(FIXED, (PhaseOrder.TOE_OFF_FIRST,), Smoothing())
     times = {name: 0.1 * i for i, name in enumerate(phased.times)}
     held = with_times(phased, times)
     assert held.times == {name: (t, t) for name, t in times.items()}

@@ -221,7 +221,7 @@ def test_a_free_rhythm_is_held_and_the_status_says_so() -> None:
 
 def test_a_collocation_can_begin_with_it(climbed: Solution) -> None:
     """Less than a hundred iterations, which the human means need before the rhythm is free."""
-    search = OrderSearch(FIXED, PhaseOrder.TOE_OFF_FIRST, Smoothing(), Effort(), None)
+    search = OrderSearch(FIXED, (PhaseOrder.TOE_OFF_FIRST,), Smoothing(), Effort(), None)
     found = collocation._begin([search], climbed)
     assert found is not None
     assert found.result.minimum.converged

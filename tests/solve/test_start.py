@@ -15,6 +15,10 @@ from ergowalk.solvers.ipopt import Ipopt
 from ergowalk.solving import collocation, solve, stages
 from ergowalk.solving.stages import Effort, OrderSearch
 from ergowalk.solving.start import StartingGait, within
+from ergowalk.transcription import halves as halves_module
+from ergowalk.transcription.curves import Guess
+from ergowalk.transcription.halves import Half, Orders, halves_of
+from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.mesh import walking_mesh
 from ergowalk.transcription.walker import Smoothing
 
@@ -28,9 +32,23 @@ def gait(paper_gait_file: Path) -> Solution:
 
 def begun(problem: GaitProblem, gait: Solution) -> collocation.Candidate | None:
     """The coarse stage from a gait."""
-    orders = problem.rhythm.orders()
-    searches = [OrderSearch(problem, o, Smoothing(), Effort(), None) for o in orders]
-    return collocation._begin(searches, gait)
+
+    def search(
+        problem: GaitProblem, orders: Orders, store: KernelStore | None = None
+    ) -> OrderSearch:
+        return OrderSearch(problem, orders, Smoothing(), Effort(), None, store)
+
+    return collocation._begin(search, problem, gait)
+
+
+def halves(problem: GaitProblem, gait: Solution) -> tuple[Half, ...]:
+    """The halves of a problem in the orders of a gait."""
+    return halves_of(problem, (gait.rhythm.order,) * (1 + problem.full_stride), Smoothing())
+
+
+def guessed(problem: GaitProblem, gait: Solution) -> Guess:
+    """The curves of a gait for a problem."""
+    return StartingGait(gait).guess(problem, halves(problem, gait))
 
 
 def test_the_side_inside_the_phase_is_taken_where_an_instant_stands_twice() -> None:
@@ -45,7 +63,7 @@ def test_the_curves_of_a_gait_are_those_of_its_record(gait: Solution) -> None:
     """At both ends of every phase, seen from inside, and per kg of body mass."""
     data, mass = gait.dataset, FIXED.body.total_mass
     time, contacts = data["time"].to_numpy(), data["contact_phase"].to_numpy()
-    guess = StartingGait(gait).guess(FIXED)
+    guess = guessed(FIXED, gait)
     fractions = boundary_fractions(gait.rhythm)
     for i, phase in enumerate(half_stride_phases(gait.rhythm.order)):
         samples = guess(i, np.array([0.0, 1.0]))
@@ -65,7 +83,7 @@ def test_the_curves_of_a_gait_are_those_of_its_record(gait: Solution) -> None:
 def test_a_longer_stride_goes_through_the_same_angles_more_slowly(gait: Solution) -> None:
     slow = FIXED.replace(stride_time_s=2 * FIXED.stride_time_s)
     parts = np.linspace(0.1, 0.9, 5)
-    own, late = (StartingGait(gait).guess(p)(2, parts) for p in (FIXED, slow))
+    own, late = (guessed(p, gait)(2, parts) for p in (FIXED, slow))
     np.testing.assert_allclose(late.value["shank_1"], own.value["shank_1"])
     np.testing.assert_allclose(late.rate["shank_1"], own.rate["shank_1"] / 2)
     np.testing.assert_allclose(late.acceleration["shank_1"], own.acceleration["shank_1"] / 4)
@@ -73,17 +91,17 @@ def test_a_longer_stride_goes_through_the_same_angles_more_slowly(gait: Solution
 
 def test_instants_stay_inside_the_bounds_of_the_problem(gait: Solution) -> None:
     start = StartingGait(gait)
-    times = start.times(FIXED)
+    times = start.times(FIXED, halves(FIXED, gait))
     assert times is not None
     assert times["heel_off"] == pytest.approx(0.23 * FIXED.stride_time_s, rel=1e-9)
     later = FIXED.replace(rhythm=FIXED.rhythm.replace(heel_off=[0.3, 0.35]))
-    moved = start.times(later)
+    moved = start.times(later, halves(later, gait))
     assert moved is not None
     assert moved["heel_off"] == pytest.approx(0.3 * FIXED.stride_time_s, rel=1e-9)
     other = preset("berbyuk2002")
     other = other.replace(rhythm=other.rhythm.replace(order="flat-first"))
-    assert start.order is PhaseOrder.TOE_OFF_FIRST
-    assert start.times(other) is None
+    assert start.orders(FIXED) == (PhaseOrder.TOE_OFF_FIRST,)
+    assert start.orders(other) is None
 
 
 def test_from_its_own_answer_the_search_is_shorter(gait: Solution) -> None:
@@ -102,7 +120,7 @@ def test_a_start_that_cannot_be_used_is_said(
     """The gait has the other order of phases: the search begins with the human means."""
     monkeypatch.setattr(stages, "Ipopt", partial(Ipopt, max_iterations=3))
     monkeypatch.setattr(
-        stages, "walking_mesh", lambda o, t, s, level: walking_mesh(o, t, s, level / 5)
+        halves_module, "walking_mesh", lambda o, t, s, level: walking_mesh(o, t, s, level / 5)
     )
     other = preset("berbyuk2002")
     other = other.replace(rhythm=other.rhythm.replace(order="flat-first"))
@@ -117,7 +135,7 @@ def test_a_start_that_cannot_be_used_is_said(
 def test_a_start_of_no_numbers_is_said(gait: Solution, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stages, "Ipopt", partial(Ipopt, max_iterations=3))
     monkeypatch.setattr(
-        stages, "walking_mesh", lambda o, t, s, level: walking_mesh(o, t, s, level / 5)
+        halves_module, "walking_mesh", lambda o, t, s, level: walking_mesh(o, t, s, level / 5)
     )
     lost = Solution(gait.dataset.assign(trunk_angle=gait.dataset["trunk_angle"] * np.nan))
     answer = solve(FIXED, start=lost)

@@ -34,7 +34,7 @@ def gait(paper_gait_file: Path) -> Solution:
 
 def collocation(devices: Devices, gait: Solution) -> Collocation:
     _, result = recall(gait)
-    phased = walking_problem(FIXED.replace(devices=devices), ORDER)
+    phased = walking_problem(FIXED.replace(devices=devices), (ORDER,))
     return Collocation(phased, result.collocation.mesh, result.points)
 
 

@@ -44,12 +44,12 @@ class Walk:
         return collocation.unpack(collocation.pack(guess, self.fit.times))
 
     def residuals(self, curves: Trajectory, allowed: Allowance | None = None) -> Residuals:
-        return mesh_residuals(self.search.walker, ORDER, curves, allowed)
+        return mesh_residuals(self.search.halves, curves, allowed)
 
 
 @pytest.fixture(scope="module")
 def walk() -> Walk:
-    search = OrderSearch(PROBLEM, ORDER, Smoothing(), Effort(), None)
+    search = OrderSearch(PROBLEM, (ORDER,), Smoothing(), Effort(), None)
     return Walk(search, search.fit())
 
 
@@ -74,7 +74,7 @@ def test_every_element_has_an_error(walk: Walk) -> None:
 
 def test_the_work_is_that_of_the_dense_curves(walk: Walk) -> None:
     curves = walk.curves(0.6)
-    dataset = dense_gait(walk.search.walker, ORDER, curves)
+    dataset = dense_gait(PROBLEM, walk.search.halves, curves)
     found = energy_per_metre(walk.residuals(curves).work, PROBLEM.step_length_m)
     assert found == pytest.approx(dense_energy(dataset, PROBLEM.step_length_m), rel=2e-3)
 

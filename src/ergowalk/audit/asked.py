@@ -10,7 +10,7 @@ import numpy as np
 from ergowalk.audit import residuals
 from ergowalk.audit.reading import MAY_BE_MISSING
 from ergowalk.audit.record import JOINTS, Record, as_number
-from ergowalk.audit.report import LEGS, AuditLine, Worst, worst
+from ergowalk.audit.report import LEGS, AuditLine, Residual, Worst, worst
 from ergowalk.audit.walker import Array
 from ergowalk.corridors import BUILT_IN, HumanGait, human_gait
 from ergowalk.errors import CorridorError
@@ -54,7 +54,22 @@ def corridor_lines(record: Record, folder: Path | None) -> list[AuditLine]:
 
 def _asked_corridor_line(record: Record, folder: Path | None) -> AuditLine:
     line = residuals.CORRIDORS_AS_ASKED
-    asked = record.table("corridors")
+    found = []
+    for leg in (0, 1):
+        difference = _asked_difference(line, record, leg, folder)
+        if isinstance(difference, AuditLine):
+            return difference
+        found.append(difference)
+    difference = np.stack(found, axis=1)
+    at = worst(difference, record.time, LEGS, CORRIDOR_JOINTS, one_sided=False)
+    return line.judged(at)
+
+
+def _asked_difference(
+    line: Residual, record: Record, leg: int, folder: Path | None
+) -> Array | AuditLine:
+    """Difference of the stored corridors of a leg [deg] (n, 3), or why there is none."""
+    asked = record.leg_table("corridors", leg)
     source, width = asked.get("source"), as_number(asked.get("width_sd"))
     if not isinstance(source, str) or not np.isfinite(width):
         note = "the stored problem does not state corridors.source and corridors.width_sd"
@@ -69,9 +84,7 @@ def _asked_corridor_line(record: Record, folder: Path | None) -> AuditLine:
     widths = [_width(asked.get(f"{joint}_width_sd", "same"), width) for joint in CORRIDOR_JOINTS]
     if np.any(np.isnan(widths)):
         return line.cannot_be_judged("the stored problem states a width that is no number")
-    difference = _corridor_difference(record, human, widths)
-    found = worst(difference, record.time, LEGS, CORRIDOR_JOINTS, one_sided=False)
-    return line.judged(found)
+    return _corridor_difference(record, human, widths, leg)
 
 
 def _width(stated: object, common: float) -> float:
@@ -81,17 +94,17 @@ def _width(stated: object, common: float) -> float:
     return np.inf if stated == "off" else as_number(stated)
 
 
-def _corridor_difference(record: Record, human: HumanGait, widths: list[float]) -> Array:
-    """Largest difference of either bound [deg] (n, 2, 3); NaN where a bound is missing.
+def _corridor_difference(record: Record, human: HumanGait, widths: list[float], leg: int) -> Array:
+    """Largest difference of either bound [deg] (n, 3); NaN where a bound is missing.
 
     Where no corridor is asked for, a bound that is there differs by infinity.
     """
-    fraction = record.time[:, None] / record.stride_time - np.array([0.0, 0.5])
+    fraction = (record.time - record.contacts[leg]) / record.stride_time
     difference = np.zeros((*fraction.shape, len(CORRIDOR_JOINTS)))
     for j, joint in enumerate(CORRIDOR_JOINTS):
         mean, sd = (curve(fraction) for curve in human.curves[f"{joint}_angle"])
         for name, sign in (("corridor_lower", -1), ("corridor_upper", 1)):
-            stored = np.degrees(record.raw[name][..., j])
+            stored = np.degrees(record.raw[name][:, leg, j])
             if np.isinf(widths[j]):
                 difference[..., j] = np.where(np.isnan(stored), 0.0, np.inf)
                 continue

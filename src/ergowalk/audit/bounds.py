@@ -27,23 +27,28 @@ def bound_lines(record: Record) -> list[AuditLine]:
     upward = worst(-force_y / weight, record.time, LEGS)
     lines = [residuals.REACTION_UPWARD.judged(upward)]
 
-    limits = record.table("limits")
-    cap = _limit(limits.get("vertical_reaction_body_weights"))
-    excess = force_y / weight - cap
-    lines.append(_limited(residuals.REACTION_CAP, record, cap, excess))
-    friction = _limit(limits.get("friction_coefficient"))
+    caps = _of_legs(record, "vertical_reaction_body_weights")
+    lines.append(_limited(residuals.REACTION_CAP, record, caps, force_y / weight - caps))
+    cones = _of_legs(record, "friction_coefficient")
     # no cone is not a cone of infinite width: inf times zero is not a number
-    excess = (np.abs(force_x) - (friction if np.isfinite(friction) else 0.0) * force_y) / weight
-    lines.append(_limited(residuals.FRICTION, record, friction, excess))
+    excess = (np.abs(force_x) - np.where(np.isfinite(cones), cones, 0.0) * force_y) / weight
+    lines.append(_limited(residuals.FRICTION, record, cones, excess))
     return lines + _moment_lines(record)
 
 
-def _limited(line: Residual, record: Record, limit: float, excess: Array) -> AuditLine:
-    if np.isnan(limit):
+def _of_legs(record: Record, name: str) -> Array:
+    """A limit of the stored problem for each leg (2,)."""
+    return np.array([_limit(record.leg_table("limits", leg).get(name)) for leg in (0, 1)])
+
+
+def _limited(line: Residual, record: Record, limits: Array, excess: Array) -> AuditLine:
+    if np.any(np.isnan(limits)):
         return line.cannot_be_judged(NOT_STATED)
-    if np.isinf(limit):
+    if np.all(np.isinf(limits)):
         return line.nothing_to_judge(NO_LIMIT)
-    return line.judged(worst(excess, record.time, LEGS), f"limit {limit:g}")
+    over = np.where(np.isinf(limits), -np.inf, excess)
+    words = " and ".join(dict.fromkeys(f"{limit:g}" for limit in limits))
+    return line.judged(worst(over, record.time, LEGS), f"limit {words}")
 
 
 def _limit(stated: object) -> float:
@@ -52,30 +57,23 @@ def _limit(stated: object) -> float:
 
 
 def _moment_lines(record: Record) -> list[AuditLine]:
-    limits = record.table("limits")
     return [
-        _moment_line(
-            residuals.MOMENT_LIMITS, record, limits.get("moment_nm_per_kg"), _moment_excess
-        ),
-        _moment_line(
-            residuals.MOMENT_RATE_LIMITS,
-            record,
-            limits.get("moment_rate_nm_per_kg_s"),
-            _rate_excess,
-        ),
+        _moment_line(residuals.MOMENT_LIMITS, record, "moment_nm_per_kg", _moment_excess),
+        _moment_line(residuals.MOMENT_RATE_LIMITS, record, "moment_rate_nm_per_kg_s", _rate_excess),
     ]
 
 
 def _moment_line(
-    line: Residual, record: Record, stated: object, check: Callable[[Record, int, float], Worst]
+    line: Residual, record: Record, limit: str, check: Callable[[Record, int, Array], Worst]
 ) -> AuditLine:
     """Line of a bound per joint and kilogram, ``check`` giving the excess [N m] at one joint."""
-    table = stated if isinstance(stated, dict) else {}
-    bounds = {joint: _limit(table.get(name)) for joint, name in enumerate(JOINTS)}
-    if any(np.isnan(bound) for bound in bounds.values()):
+    stated = [record.leg_table("limits", leg).get(limit) for leg in (0, 1)]
+    tables = [table if isinstance(table, dict) else {} for table in stated]
+    bounds = np.array([[_limit(table.get(name)) for table in tables] for name in JOINTS])
+    if np.any(np.isnan(bounds)):
         return line.cannot_be_judged(NOT_STATED)
-    bounds = {joint: bound * record.walker.mass for joint, bound in bounds.items()}
-    found = [check(record, joint, b) for joint, b in bounds.items() if np.isfinite(b)]
+    bounds = bounds * record.walker.mass
+    found = [check(record, j, b) for j, b in enumerate(bounds) if np.any(np.isfinite(b))]
     if not found:
         return line.nothing_to_judge(NO_LIMIT)
     over = largest(found)
@@ -94,12 +92,12 @@ def physical_moment(record: Record, joint: int) -> Array:
     return np.where(np.isin(record.phase, (HEEL, FLAT)), 0.0, moment)
 
 
-def _moment_excess(record: Record, joint: int, bound: float) -> Worst:
-    excess = np.abs(physical_moment(record, joint)) - bound
+def _moment_excess(record: Record, joint: int, bounds: Array) -> Worst:
+    excess = np.abs(physical_moment(record, joint)) - bounds
     return worst(excess[..., None], record.time, LEGS, (JOINTS[joint],))
 
 
-def _rate_excess(record: Record, joint: int, bound: float) -> Worst:
+def _rate_excess(record: Record, joint: int, bounds: Array) -> Worst:
     """Largest |m(t2) - m(t1)| - bound (t2 - t1) over all pairs of instants of the periodic stride.
 
     Two strides in a row hold every pair; for each t2 the worst t1 is a running extreme of
@@ -107,10 +105,11 @@ def _rate_excess(record: Record, joint: int, bound: float) -> Worst:
     """
     moment = np.tile(physical_moment(record, joint), (2, 1))
     time = np.concatenate([record.time, record.time + record.stride_time])
-    ramp = bound * time[:, None]
+    limited = np.isfinite(bounds)
+    ramp = np.where(limited, bounds, 0.0) * time[:, None]
     rise = (moment - ramp) - np.minimum.accumulate(moment - ramp)
     fall = np.maximum.accumulate(moment + ramp) - (moment + ramp)
-    excess = np.maximum(rise, fall)[..., None]
+    excess = np.where(limited, np.maximum(rise, fall), -np.inf)[..., None]
     return worst(excess, np.tile(record.time, 2), LEGS, (JOINTS[joint],))
 
 

@@ -13,6 +13,7 @@ from ergowalk.audit.record import (
     FOREFOOT,
     HEEL,
     JOINTS,
+    LEG_TABLES,
     SEGMENTS,
     SWING,
     TOE,
@@ -126,11 +127,29 @@ def _angles(record: Record) -> Worst:
 
 def symmetry_lines(record: Record) -> list[AuditLine]:
     """Periodicity (2) and the legs half a stride apart, in motion and in loads."""
+    mirrors = (residuals.LEG_SYMMETRY, residuals.LOAD_SYMMETRY)
+    periodic = residuals.PERIODICITY.judged(_periodicity(record))
+    if record.each_leg and asks_for_each_leg(record):
+        return [periodic, *(m.nothing_to_judge("each leg has its own curves") for m in mirrors)]
+    if record.each_leg:
+        note = "each leg has its own curves, for which the stored problem does not ask"
+        return [periodic, *(m.cannot_be_judged(note) for m in mirrors)]
     return [
-        residuals.PERIODICITY.judged(_periodicity(record)),
+        periodic,
         residuals.LEG_SYMMETRY.judged(_mirror(record)),
         residuals.LOAD_SYMMETRY.judged(_loads(record)),
     ]
+
+
+def asks_for_each_leg(record: Record) -> bool:
+    """Whether the stored problem lets the legs differ."""
+    asked = record.table("stride").get("legs")
+    if asked != "auto":
+        return asked == "each"
+    pairs = (v for v in record.table("body").values() if isinstance(v, list))
+    tables = ("limits", "rhythm", "corridors", "devices")
+    own = any(name in record.table(t) for t in tables for name in LEG_TABLES)
+    return own or any(len(set(pair)) > 1 for pair in pairs)
 
 
 def _periodicity(record: Record) -> Worst:

@@ -101,7 +101,9 @@ def _read(dataset: xr.Dataset) -> Record:
         energy_per_metre=_number(dataset, "energy_per_metre"),
         stated=frozenset(map(str, dataset.attrs)),
         objective_per_metre=as_number(dataset.attrs.get("objective_per_metre")),
-        rhythm=_rhythm(dataset),
+        rhythm=_rhythm(dataset, "rhythm"),
+        rhythm_leg_2=_rhythm(dataset, "rhythm_leg_2") if _each_leg(dataset) else None,
+        step_lengths=_step_lengths(dataset),
         problem=_problem(dataset),
         mesh_history=_mesh_history(dataset),
     )
@@ -199,18 +201,36 @@ def _positive(dataset: xr.Dataset, name: str) -> float:
     return number
 
 
-def _rhythm(dataset: xr.Dataset) -> dict[str, float]:
-    text = _attribute(dataset, "rhythm")
+def _each_leg(dataset: xr.Dataset) -> bool:
+    """Whether the file tells the rhythm and the steps of each leg."""
+    return any(name in dataset.attrs for name in ("rhythm_leg_2", "step_lengths"))
+
+
+def _step_lengths(dataset: xr.Dataset) -> tuple[float, float]:
+    if not _each_leg(dataset):
+        length = _positive(dataset, "step_length")
+        return length, length
+    stored = _json(_attribute(dataset, "step_lengths"))
+    numbers = [as_number(x) for x in stored] if isinstance(stored, list) else []
+    if len(numbers) != 2 or not all(0 < x < np.inf for x in numbers):
+        raise GaitFileError(
+            "must be the two lengths of the steps", _REMEDY, field="step_lengths", value=stored
+        )
+    return numbers[0], numbers[1]
+
+
+def _rhythm(dataset: xr.Dataset, name: str) -> dict[str, float]:
+    text = _attribute(dataset, name)
     stored = _json(text)
     given = stored if isinstance(stored, dict) else {}
-    for name in RHYTHM:
-        value = given.get(name)
+    for instant in RHYTHM:
+        value = given.get(instant)
         if not isinstance(value, int | float) or isinstance(value, bool) or not 0 < value < 1:
             raise GaitFileError(
-                "must be a fraction of the stride time", _REMEDY, field=f"rhythm.{name}",
+                "must be a fraction of the stride time", _REMEDY, field=f"{name}.{instant}",
                 value=value,
             )  # fmt: skip
-    return {name: float(given[name]) for name in RHYTHM}
+    return {instant: float(given[instant]) for instant in RHYTHM}
 
 
 def _problem(dataset: xr.Dataset) -> dict[str, Any]:

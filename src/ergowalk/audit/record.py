@@ -19,6 +19,7 @@ SEGMENTS = ("thigh", "shank", "foot", "toes")
 PHASES = ("swing", "heel", "flat", "forefoot", "toe")
 SWING, HEEL, FLAT, FOREFOOT, TOE = range(5)
 UNKNOWN_PHASE = -1
+LEG_TABLES = ("leg_1", "leg_2")
 RHYTHM = ("heel_end", "heel_off", "toe_tip_start", "toe_off")
 
 
@@ -28,7 +29,8 @@ class Record:
 
     Motion: ``hip`` (n,), ``trunk`` (n,), ``segments``: four of (n, 2). ``raw`` holds every
     variable as stored; ``phase`` (n, 2) indexes :data:`PHASES`; ``stated`` names the
-    attributes that are there.
+    attributes that are there. ``step_lengths`` are those with which leg 1 and leg 2 land;
+    ``rhythm_leg_2`` is None where that of leg 1 is that of both.
     """
 
     time: Array
@@ -41,6 +43,8 @@ class Record:
     objective_per_metre: float
     stated: frozenset[str]
     rhythm: Mapping[str, float]
+    rhythm_leg_2: Mapping[str, float] | None
+    step_lengths: tuple[float, float]
     problem: Mapping[str, Any]
     mesh_history: tuple[Mapping[str, Any], ...]
 
@@ -48,6 +52,28 @@ class Record:
         """A table of the stored problem; empty where there is none."""
         stored = self.problem.get(name)
         return stored if isinstance(stored, dict) else {}
+
+    def leg_table(self, name: str, leg: int) -> Mapping[str, Any]:
+        """What a table of the stored problem says of one leg (0, 1)."""
+        common = {k: v for k, v in self.table(name).items() if k not in LEG_TABLES}
+        own = self.table(name).get(LEG_TABLES[leg])
+        return _laid_over(common, own) if isinstance(own, dict) else common
+
+    @property
+    def each_leg(self) -> bool:
+        """Whether each leg has its own curves, so that none is told by the other's."""
+        return self.rhythm_leg_2 is not None
+
+    @property
+    def rhythms(self) -> tuple[Mapping[str, float], Mapping[str, float]]:
+        """The rhythm of each leg, as fractions of T after its own heel contact."""
+        return self.rhythm, self.rhythm if self.rhythm_leg_2 is None else self.rhythm_leg_2
+
+    @property
+    def contacts(self) -> Array:
+        """Heel contact of leg 1 and of leg 2 in the stride (2,) [s]."""
+        second = self.rhythm["toe_tip_start"] if self.each_leg else 0.5
+        return np.array([0.0, second * self.stride_time])
 
     @cached_property
     def pieces(self) -> Pieces:
@@ -91,9 +117,8 @@ class Record:
     @cached_property
     def heel_print(self) -> Array:
         """Where the heel of the current or last footprint stands (n, 2) [m]."""
-        delay = np.array([0.0, self.stride_time / 2])
-        stride = np.floor((self.time[:, None] - delay) / self.stride_time + 1e-9)
-        return np.asarray(2 * self.step_length * stride + [0.0, self.step_length])
+        stride = np.floor((self.time[:, None] - self.contacts) / self.stride_time + 1e-9)
+        return np.asarray(2 * self.step_length * stride + [0.0, self.step_lengths[1]])
 
 
 _ORDERS = ("position", "velocity", "acceleration")
@@ -105,6 +130,18 @@ def as_number(stated: object) -> float:
     if isinstance(stated, bool) or not isinstance(stated, int | float):
         return float("nan")
     return float(stated)
+
+
+def _laid_over(common: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
+    """A table with what another says instead; "same" says nothing."""
+    found = dict(common)
+    for key, value in own.items():
+        under = found.get(key)
+        if isinstance(value, dict) and isinstance(under, dict):
+            found[key] = _laid_over(under, value)
+        elif value != "same" or key not in found:
+            found[key] = value
+    return found
 
 
 def _complex(pairs: Array) -> NDArray[np.complex128]:

@@ -55,5 +55,6 @@ SMOOTH_PIECES = Residual("smooth_pieces", "smooth pieces with fewer than five sa
 PHASES = Residual("phases", "contact phases at the instants of the rhythm", 1e-6, "T")
 RHYTHM_ORDER = Residual("rhythm_order", "order of the rhythm (3)", 1e-6, "T")
 RHYTHM_AS_ASKED = Residual("rhythm_as_asked", "rhythm within the bounds of the problem", 1e-6, "T")
+STEPS_AS_ASKED = Residual("steps_as_asked", "both steps within the bounds of the problem", 1e-6)
 ATTRIBUTES = Residual("attributes", "attributes against the stored problem", 1e-9)
 FINITE = Residual("finite", "values that are not numbers", 0.0)

@@ -93,40 +93,83 @@ def _offset(record: Record, leg: int, before: _Run, run: _Run) -> float:
 
     The last sample before and the first one after it both count: the instant stands twice.
     """
-    starts = (0.0, *(record.rhythm[name] for name in RHYTHM))
-    wanted = starts[CYCLE.index(run.phase)] + leg / 2
+    starts = (0.0, *(record.rhythms[leg][name] for name in RHYTHM))
+    wanted = starts[CYCLE.index(run.phase)] + record.contacts[leg] / record.stride_time
     distance = np.array([before.end, run.start]) / record.stride_time - wanted
     return float(np.max(np.abs(distance - np.round(distance))))
 
 
 def rhythm_lines(record: Record) -> list[AuditLine]:
     """The rhythm against inequality (3) and against what the stored problem asks for."""
-    heel_end, heel_off, tip, toe_off = (record.rhythm[name] for name in RHYTHM)
-    breaches = {
-        "heel_end after heel_off": heel_end - heel_off,
-        "heel_off after toe_tip_start": heel_off - tip,
-        "toe_tip_start after toe_off": tip - toe_off,
-        "toe-off of the other leg after heel_off": toe_off - 0.5 - heel_off,
-    }
-    return [residuals.RHYTHM_ORDER.judged(_greatest(breaches)), _asked_line(record)]
+    breaches: dict[str, float] = {}
+    for leg in _own_legs(record):
+        heel_end, heel_off, tip, toe_off = (record.rhythms[leg][name] for name in RHYTHM)
+        breaches |= {
+            "heel_end after heel_off" + _of(record, leg): heel_end - heel_off,
+            "heel_off after toe_tip_start" + _of(record, leg): heel_off - tip,
+            "toe_tip_start after toe_off" + _of(record, leg): tip - toe_off,
+            "toe-off of the other leg after heel_off" + _of(record, leg): (
+                _other_toe_off(record, leg) - heel_off
+            ),
+        }
+    if record.each_leg:
+        both = sum(rhythm["toe_tip_start"] for rhythm in record.rhythms)
+        breaches["heel contacts of both legs"] = abs(both - 1.0)
+    lines = [residuals.RHYTHM_ORDER.judged(_greatest(breaches)), _asked_line(record)]
+    return lines + ([_steps_line(record)] if record.each_leg else [])
+
+
+def _own_legs(record: Record) -> tuple[int, ...]:
+    """The legs that have a rhythm of their own."""
+    return (0, 1) if record.each_leg else (0,)
+
+
+def _of(record: Record, leg: int) -> str:
+    return f", leg {leg + 1}" if record.each_leg else ""
+
+
+def _other_toe_off(record: Record, leg: int) -> float:
+    """Toe-off of the other leg after the heel contact of this one, which came later."""
+    own, other = record.rhythms[leg], record.rhythms[1 - leg]
+    return other["toe_off"] - (1.0 - own["toe_tip_start"] if record.each_leg else 0.5)
 
 
 def _asked_line(record: Record) -> AuditLine:
-    asked = record.table("rhythm")
-    breaches = {}
-    for name in ("heel_end", "heel_off", "toe_off"):
-        bounds = _bounds(asked.get(name))
-        if bounds is None:
-            return residuals.RHYTHM_AS_ASKED.cannot_be_judged(NOT_STATED.format(name))
-        value = record.rhythm[name]
-        breaches[name] = max(bounds[0] - value, value - bounds[1])
-    early = record.rhythm["heel_end"] - (record.rhythm["toe_off"] - 0.5)
-    orders = {"toe-off-first": -early, "flat-first": early, "best": 0.0}
-    order = str(asked.get("order"))
-    if order not in orders:
-        return residuals.RHYTHM_AS_ASKED.cannot_be_judged(NOT_STATED.format("order"))
-    breaches["order"] = orders[order]
+    breaches: dict[str, float] = {}
+    for leg in _own_legs(record):
+        asked = record.leg_table("rhythm", leg)
+        for name in ("heel_end", "heel_off", "toe_off"):
+            bounds = _bounds(asked.get(name))
+            if bounds is None:
+                return residuals.RHYTHM_AS_ASKED.cannot_be_judged(NOT_STATED.format(name))
+            value = record.rhythms[leg][name]
+            breaches[name + _of(record, leg)] = max(bounds[0] - value, value - bounds[1])
+        early = record.rhythms[leg]["heel_end"] - _other_toe_off(record, leg)
+        orders = {"toe-off-first": -early, "flat-first": early, "best": 0.0}
+        order = str(asked.get("order"))
+        if order not in orders:
+            return residuals.RHYTHM_AS_ASKED.cannot_be_judged(NOT_STATED.format("order"))
+        breaches["order" + _of(record, leg)] = orders[order]
     return residuals.RHYTHM_AS_ASKED.judged(_greatest(breaches))
+
+
+def _steps_line(record: Record) -> AuditLine:
+    """Length and time of the two steps against each other and against the problem."""
+    first, second = record.step_lengths
+    time = 1.0 - 2 * record.rhythm["toe_tip_start"]  # T_1 less T_2, over T
+    found = {
+        "step_length_asymmetry": (first - second) / (first + second),
+        "step_time_asymmetry": time,
+    }
+    breaches = {"step_lengths": abs(first + second - 2 * record.step_length) / record.step_length}
+    for name, value in found.items():
+        bounds = _bounds(record.table("stride").get(name))
+        if bounds is None:
+            note = f"the stored problem does not state stride.{name}"
+            return residuals.STEPS_AS_ASKED.cannot_be_judged(note)
+        breaches[name] = max(bounds[0] - value, value - bounds[1])
+    note = f"asymmetry of length {found['step_length_asymmetry']:+.4f}, of time {time:+.4f}"
+    return residuals.STEPS_AS_ASKED.judged(_greatest(breaches), note)
 
 
 def _bounds(asked: object) -> tuple[float, float] | None:

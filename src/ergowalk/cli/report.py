@@ -82,7 +82,8 @@ class Result:
             "energy_share": energy_shares(solution),
             "rhythm": solution.rhythm.as_dict(),
             "rhythm_fixed": fixed_instants(problem),
-            "phase_order": str(solution.rhythm.order),
+            "phase_order": str(attributes.get("phase_order", solution.rhythm.order)),
+            **legs_as_dict(solution),
             "peak_vertical_reaction_body_weights": peak_reaction(solution),
             "method": str(attributes.get("method", "")),
             "iterations": _whole(attributes.get("iterations")),
@@ -116,7 +117,7 @@ class Result:
             *self._device_rows(),
             ("cost of transport", f"{found['cost_of_transport']:.4f} (E / M g)"),
             ("energy share", ", ".join(shares)),
-            ("rhythm", _rhythm_text(found["rhythm"], found["rhythm_fixed"])),
+            *self._rhythm_rows(),
             ("phase order", _order_text(found["phase_order"], problem)),
             ("peak R_y", f"{peak:.3f} body weights"),
             ("method", method_text(attributes)),
@@ -132,6 +133,26 @@ class Result:
             ("status", f"{'acceptable' if self.accepted else 'NOT ACCEPTABLE'}: {found['status']}"),
             ("files", f"{self.folder}: {summarised(found['files'])}"),
         ]
+
+    def _rhythm_rows(self) -> Rows:
+        """Contact instants; of both legs, with their steps and energies, where they differ."""
+        solution = self.solution
+        if not solution.full_stride:
+            fixed = fixed_instants(solution.problem)
+            return [("rhythm", _rhythm_text(solution.rhythm.as_dict(), fixed))]
+        rows: Rows = []
+        steps = zip(solution.step_lengths, solution.step_times, strict=True)
+        for leg, (length, time) in enumerate(steps):
+            energy = solution.energy_by_leg[leg]
+            parts = ", ".join(f"{joint} {e:.2f}" for joint, e in energy.items())
+            rhythm = solution.rhythms[leg].as_dict()
+            fixed = fixed_instants(solution.problem, leg)
+            rows += [
+                (f"leg {leg + 1}", f"{sum(energy.values()):.2f} J/m: {parts}"),
+                ("", f"lands after {length:.4f} m and {time:.4f} s"),
+                ("", _rhythm_text(rhythm, fixed)),
+            ]
+        return rows
 
     def _objective_row(self) -> Rows:
         """The value of what was minimised, where that is not E."""
@@ -255,10 +276,22 @@ def method_text(attributes: Mapping[str, Any]) -> str:
     return f"spline, {attributes.get('solver')}, {knots} knots, rho {rho:g} s^3, {asked}"
 
 
-def fixed_instants(problem: GaitProblem) -> list[str]:
+def legs_as_dict(solution: Solution) -> dict[str, Any]:
+    """What each leg does, where they differ."""
+    if not solution.full_stride:
+        return {}
+    return {
+        "rhythm_leg_2": solution.rhythms[1].as_dict(),
+        "step_lengths_m": solution.step_lengths,
+        "step_times_s": solution.step_times,
+        "energy_by_leg": solution.energy_by_leg,
+    }
+
+
+def fixed_instants(problem: GaitProblem, leg: int = 0) -> list[str]:
     """Rhythm parameters that the problem fixes; the start of the toe-tip phase always is."""
-    free = ("heel_end", "heel_off", "toe_off")
-    fixed = [name for name in free if len(set(problem.rhythm.bounds(name))) == 1]
+    free, rhythm = ("heel_end", "heel_off", "toe_off"), problem.rhythm_of(leg)
+    fixed = [name for name in free if len(set(rhythm.bounds(name))) == 1]
     return sorted([*fixed, "toe_tip_start"], key=list(RHYTHM_WORDS).index)
 
 

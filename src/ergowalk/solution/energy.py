@@ -80,10 +80,15 @@ def _runs_of_numbers(values: Array) -> list[slice]:
 
 def joint_energies(dataset: xr.Dataset) -> dict[str, float]:
     """Integral of absolute power [J] over the stride, both legs together, by joint."""
+    by_joint = leg_energies(dataset).sum(axis=0)
+    return {str(j): float(e) for j, e in zip(dataset["joint"].to_numpy(), by_joint, strict=True)}
+
+
+def leg_energies(dataset: xr.Dataset) -> Array:
+    """Integral of absolute power [J] over the stride, (legs, joints)."""
     power = dataset["joint_power"].transpose("time", "leg", "joint").to_numpy()
     each = absolute_integrals(dataset["time"].to_numpy(), power.reshape(len(power), -1))
-    by_joint = each.reshape(power.shape[1:]).sum(axis=0)
-    return {str(j): float(e) for j, e in zip(dataset["joint"].to_numpy(), by_joint, strict=True)}
+    return each.reshape(power.shape[1:])
 
 
 def device_works(dataset: xr.Dataset) -> dict[str, tuple[float, float]]:

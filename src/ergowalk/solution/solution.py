@@ -17,7 +17,7 @@ from ergowalk.errors import GaitFileError, OutputError
 from ergowalk.gait.rhythm import Rhythm
 from ergowalk.problem import GaitProblem
 from ergowalk.problem.files import problem_from_toml
-from ergowalk.solution.energy import device_works, joint_energies
+from ergowalk.solution.energy import device_works, joint_energies, leg_energies
 
 if TYPE_CHECKING:
     from ergowalk.audit import AuditReport
@@ -128,6 +128,22 @@ class Solution:
         """Part of E of each joint, both legs together [J/m]."""
         distance = 2 * float(self.dataset.attrs["step_length"])
         return {j: e / distance for j, e in joint_energies(self.dataset).items()}
+
+    @cached_property
+    def energy_by_leg(self) -> tuple[dict[str, float], dict[str, float]]:
+        """Part of E of each joint of leg 1 and of leg 2 [J/m]."""
+        distance = 2 * float(self.dataset.attrs["step_length"])
+        names = [str(j) for j in self.dataset["joint"].to_numpy()]
+        first, second = (
+            {j: float(e) / distance for j, e in zip(names, leg, strict=True)}
+            for leg in leg_energies(self.dataset)
+        )
+        return first, second
+
+    @property
+    def full_stride(self) -> bool:
+        """Whether each leg has its own curves; else leg 2 mirrors leg 1."""
+        return "rhythm_leg_2" in self.dataset.attrs
 
     @cached_property
     def device_energy(self) -> dict[str, tuple[float, float]]:

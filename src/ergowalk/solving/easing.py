@@ -20,7 +20,6 @@ from ergowalk.transcription.curves import Guess, Samples
 from ergowalk.transcription.guess import with_devices
 from ergowalk.transcription.halves import in_phases
 from ergowalk.transcription.motion import body_motion, device_moment
-from ergowalk.transcription.perturbation import Perturbation
 
 Array = NDArray[np.float64]
 
@@ -33,24 +32,33 @@ def needs_easing(problem: GaitProblem) -> bool:
     return any(isinstance(d, EasedDevice) for d in problem.devices.eased().everything())
 
 
-def eased(search: OrderSearch, perturbation: Perturbation | None = None) -> StageResult:
-    """The gait of a phase order on few elements, its devices fitted step by step."""
-    problem = search.problem
-    bare = _search(search, problem.replace(devices=Devices()))
-    result = bare.fixed_rhythm(bare.fit(), perturbation)
+def eased(search: OrderSearch, bare: OrderSearch, result: StageResult) -> StageResult:
+    """The gait of a phase order on few elements, its devices fitted step by step.
+
+    ``result`` is where it begins: the gait of a search ``bare`` without those devices.
+    """
+    problem, stage = search.problem, bare
     for i, price in enumerate(PRICES):
-        stage = _search(search, problem.replace(devices=helped(problem.devices, price)))
+        if not result.minimum.converged:
+            break
+        before, stage = (
+            stage,
+            _search(search, problem.replace(devices=helped(problem.devices, price))),
+        )
         mesh, words = result.collocation.mesh, f"devices helped at {price:g}"
         if i == 0:
-            start = Start(fitted(stage, bare, result), result.trajectory.times)
+            start = Start.at(result.trajectory, fitted(stage, before, result))
             solver = Ipopt(tolerance=1e-3, barrier_end=SEARCH_BARRIER)
             result = stage.stage(words, mesh, start, solver)
         else:
             result = stage.stage(words, mesh, Start.at(result.trajectory), before=result)
-        if not result.minimum.converged:
-            break
-    start = Start(fitted(search, stage, result), result.trajectory.times)
+    start = Start.at(result.trajectory, fitted(search, stage, result))
     return search.stage("devices alone", result.collocation.mesh, start)
+
+
+def without_devices(search: OrderSearch) -> OrderSearch:
+    """The same search for a walker without any."""
+    return _search(search, search.problem.replace(devices=Devices()))
 
 
 def helped(devices: Devices, price: float) -> Devices:

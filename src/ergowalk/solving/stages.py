@@ -95,9 +95,9 @@ class Start:
     shared: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
-    def at(cls, curves: Trajectory) -> Start:
-        """At the end of another stage."""
-        return cls(curves.as_guess(), curves.times, curves.shared)
+    def at(cls, curves: Trajectory, guess: Guess | None = None) -> Start:
+        """At the end of another stage, or at curves that were made of it."""
+        return cls(guess or curves.as_guess(), curves.times, curves.shared)
 
 
 class OrderSearch:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ergowalk.transcription.collocation import Collocation
 from ergowalk.transcription.curves import Guess, Samples
+from ergowalk.transcription.edges import fourier
 from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.phases import (
     Coordinate,
@@ -323,20 +324,39 @@ def test_a_finer_mesh_uses_the_same_kernels() -> None:
 
 
 def test_derivatives_of_the_programme_are_those_of_its_values() -> None:
-    """Central differences of a whole programme, with links and rows of time."""
+    """Central differences of a whole programme, with links, rows of time and a shared unknown."""
 
     def link(instant: Instant) -> Terms:
         terms = Terms()
         x = instant.coordinates["x"]
-        terms.equal("link", ca.sin(x.value) * x.rate - instant.time)
+        terms.equal("link", ca.sin(x.value) * x.rate - instant.time * instant.shared["s"])
         return terms
 
+    def third(instant: Instant) -> Terms:
+        terms, x = Terms(), instant.coordinates["x"]
+        push = instant.curves["push"] * instant.shared["middle"]
+        terms.equal("third", x.acceleration - push, x.rate * instant.shared["s"] ** 2)
+        terms.integrand = x.value**2 * instant.shared["s"]
+        return terms
+
+    given = {"control_rates": {"u": 3.0}, "control_rate_cost": {"u": 0.2, "v": 0.1}}
+    first, second = (replace(p, **given) for p in PROBLEM.phases)
+    shared, middle = Unknown("s", 0.0, 2.0, scale=0.5), Unknown("middle")
+    push = fourier(("push",), np.array([[0.3, 1.0, 0.0, 0.4]]), 2.0)
     problem = replace(
         PROBLEM,
+        phases=(
+            first,
+            replace(
+                second,
+                inside=third,
+                shared=(middle, shared),
+                curves=(replace(push, names=("unused",)), replace(push, later="s")),
+            ),
+        ),
         links=(Link("link", "middle", link),),
-        time_rows=(("order", {"end": 1.0, "middle": -2.0}, 0.0, 1.0),),
-        control_rates={"u": 3.0},
-        control_rate_cost={"u": 0.2, "v": 0.1},
+        time_rows=(("order", {"end": 1.0, "middle": -2.0, "s": 0.7}, 0.0, 1.0),),
+        shared=(shared,),
     )
     programme = Collocation(problem, MESH, 2).programme
     oracle, rng = programme.oracle, np.random.default_rng(11)

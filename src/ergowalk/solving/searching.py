@@ -80,17 +80,26 @@ def from_mirrored(
     candidates = in_all_orders(search, equal, perturbation)
     best = best_of(candidates)
     orders, mesh = best.search.orders * 2, best.result.collocation.mesh * 2
-    first = problem.replace(devices=equal.devices) if needs_easing(problem) else problem
+    fitted_later = needs_easing(problem)
+    first = _with_common_devices(problem) if fitted_later else problem
     begun = search(first, orders)
     result = begun.stage("legs apart", mesh, twice(best.result.trajectory, problem))
     if not result.minimum.converged and not problem.body.legs_equal:
         begun, result = _step_by_step(search, first, best, orders)
     for half in (0, 1):
         begun, result = _other_order(search, begun, result, candidates, half)
-    if first is problem or not result.minimum.converged:
+    if not fitted_later or not result.minimum.converged:
         return Candidate(begun, result)
     whole = search(problem, begun.orders)
     return Candidate(whole, eased(whole, begun, result))
+
+
+def _with_common_devices(problem: GaitProblem) -> GaitProblem:
+    """The problem without the devices of one leg, each leg with a rhythm of its own all the same."""
+    found: GaitProblem = problem.replace(
+        devices=problem.mirrored().devices, stride=problem.stride.replace(legs="each")
+    )
+    return found
 
 
 def _other_order(

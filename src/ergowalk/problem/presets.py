@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from ergowalk.body import Body
 from ergowalk.errors import ProblemError
 from ergowalk.gait.rhythm import PRINTED_RHYTHM
-from ergowalk.problem.devices import Device, Devices
-from ergowalk.problem.gait_problem import Corridors, GaitProblem, RhythmBounds
-from ergowalk.problem.limits import JointBounds, Limits
+from ergowalk.problem.devices import Device, Devices, LegDevices
+from ergowalk.problem.gait_problem import Corridors, GaitProblem, LegCorridors, RhythmBounds
+from ergowalk.problem.limits import JointBounds, LegJointBounds, LegLimits, Limits
 
 DEFAULT_PRESET = "berbyuk2002"
 
@@ -33,6 +34,43 @@ _ANKLE_EXOSKELETON = Devices(
 clutch is replaced by a spring that is slack below the neutral ankle."""
 
 _HIP_EXOSUIT = Devices(hip=Device(kind="spring", stiffness_below_nm_per_rad=50.0))
+
+
+_PROSTHETIC_FOOT = Device(
+    kind="parallel",
+    own_moment=False,
+    stiffness_nm_per_rad=300.0,
+    damping_nms_per_rad=5.0,
+)
+"""An elastic ankle: 300 N m/rad (5.2 N m a degree) as a human ankle in stance, a damping that
+brings the foot back to neutral in 0.02 s; both assumed."""
+
+_BELOW_KNEE = Body(
+    shank_mass_kg=(3.51, 2.2), shank_inertia_kgm2=(0.16, 0.102), foot_mass_kg=(1.24, 0.6)
+)
+"""Shank and foot of leg 2 are 1.95 kg lighter: the difference often reported for people with one
+transtibial amputation (Smith & Martin, J. Prosthet. Orthot. 23, 2011). How that divides between
+stump, socket and foot, and a shank of the same shape, are assumed."""
+
+_ABOVE_KNEE = Body(
+    thigh_mass_kg=(8.49, 7.0),
+    thigh_inertia_kgm2=(0.57, 0.47),
+    shank_mass_kg=(3.51, 2.5),
+    shank_inertia_kgm2=(0.16, 0.116),
+    foot_mass_kg=(1.24, 0.6),
+)
+"""Thigh of leg 2 1.49 kg, shank and foot 1.65 kg lighter, shapes the same; assumed."""
+
+_KNEE_UNIT = Device(
+    kind="damper",
+    own_moment=False,
+    damping_nms_per_rad=200.0,
+    active=("heel", "flat", "forefoot"),
+)
+"""A knee that yields slowly in stance and is free from the other heel's contact on; assumed."""
+
+_ORTHOSIS = Device(kind="spring", stiffness_nm_per_rad=150.0, stiffness_below_nm_per_rad="same")
+"""A leaf of 150 N m/rad (2.6 N m a degree); assumed."""
 
 
 @dataclass(frozen=True)
@@ -75,6 +113,25 @@ def _paper(
     )
 
 
+def _one_leg(
+    name: str,
+    body: Body = Body(),  # noqa: B008 - a frozen value
+    devices: LegDevices | None = None,
+    limits: LegLimits | None = None,
+    corridors: LegCorridors | None = None,
+) -> GaitProblem:
+    """The paper's case with what belongs to leg 2 alone; its ankle has no corridor."""
+    return GaitProblem(
+        name=name,
+        step_length_m=0.76,
+        stride_time_s=1.14,
+        body=body,
+        limits=Limits(leg_2=limits),
+        corridors=Corridors(leg_2=corridors or LegCorridors(ankle_width_sd="off")),
+        devices=Devices(leg_2=devices),
+    )
+
+
 def _winter(cadence: str, step_length: float, stride_time: float) -> GaitProblem:
     return GaitProblem(
         name=f"winter-{cadence}",
@@ -114,6 +171,37 @@ PRESETS = {
             "berbyuk2002 with an elastic hip exosuit: 50 N m/rad in extension, slack in flexion, "
             "no mass (stiffness assumed)",
             lambda: _paper("hip-exosuit", devices=_HIP_EXOSUIT),
+        ),
+        Preset(
+            "below-knee-prosthesis",
+            "berbyuk2002 with an elastic ankle of 300 N m/rad in place of leg 2's own moment, shank "
+            "and foot 1.95 kg lighter (mass: Smith & Martin 2011; the rest assumed)",
+            lambda: _one_leg(
+                "below-knee-prosthesis",
+                body=_BELOW_KNEE,
+                devices=LegDevices(ankle=_PROSTHETIC_FOOT),
+            ),
+        ),
+        Preset(
+            "above-knee-prosthesis",
+            "the same with a knee that a damper of 200 N m s/rad holds in stance and that is free "
+            "in toe contact and swing, thigh, shank and foot 3.14 kg lighter (assumed)",
+            lambda: _one_leg(
+                "above-knee-prosthesis",
+                body=_ABOVE_KNEE,
+                devices=LegDevices(knee=_KNEE_UNIT, ankle=_PROSTHETIC_FOOT),
+                corridors=LegCorridors(knee_width_sd="off", ankle_width_sd="off"),
+            ),
+        ),
+        Preset(
+            "ankle-foot-orthosis",
+            "berbyuk2002 with a weak ankle of leg 2, at most 0.7 N m/kg, beside a leaf of 150 N "
+            "m/rad (both assumed)",
+            lambda: _one_leg(
+                "ankle-foot-orthosis",
+                devices=LegDevices(ankle=_ORTHOSIS),
+                limits=LegLimits(moment_nm_per_kg=LegJointBounds(ankle=0.7)),
+            ),
         ),
         Preset(
             "winter-slow",

@@ -174,8 +174,8 @@ PRESETS = {
         ),
         Preset(
             "below-knee-prosthesis",
-            "berbyuk2002 with an elastic ankle of 300 N m/rad in place of leg 2's own moment, shank "
-            "and foot 1.95 kg lighter (mass: Smith & Martin 2011; the rest assumed)",
+            "berbyuk2002 with an elastic ankle of 300 N m/rad in place of leg 2's own moment, "
+            "shank and foot 1.95 kg lighter (mass: Smith & Martin 2011; the rest assumed)",
             lambda: _one_leg(
                 "below-knee-prosthesis",
                 body=_BELOW_KNEE,

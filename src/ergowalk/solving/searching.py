@@ -95,7 +95,7 @@ def from_mirrored(
 
 
 def _with_common_devices(problem: GaitProblem) -> GaitProblem:
-    """The problem without the devices of one leg, each leg with a rhythm of its own all the same."""
+    """The problem without the devices of one leg; each leg keeps a rhythm of its own."""
     found: GaitProblem = problem.replace(
         devices=problem.mirrored().devices, stride=problem.stride.replace(legs="each")
     )

@@ -164,26 +164,27 @@ class EasedDevice(Device):
 
     help_price: float = Field(default=1.0, description="weight of the squared help per kg, s3/m2")
 
+    @staticmethod
+    def needed(device: Device) -> bool:
+        """Whether a device leaves no room for a moment of the walker's own."""
+        return not device.own_moment or device.kind in ("locked", "free")
+
     @classmethod
-    def of(cls, device: Device) -> Device:
+    def of(cls, device: Device, price: float, stiffness: float) -> Device:
         """The device beside an own moment that may not have one; others as they are.
 
-        A lock becomes a stiff spring with a damper.
+        A lock becomes a spring of a stiffness [N m/rad] with a damper.
         """
         locked = device.kind == "locked"
-        if device.own_moment and device.kind not in ("locked", "free"):
+        if not cls.needed(device):
             return device
         fields = {name: getattr(device, name) for name in Device.model_fields}
         if device.kind == "free" or (locked and device.rest_angle_deg == "latched"):
             fields |= {"kind": "parallel", "rest_angle_deg": 0.0}
         elif locked:
-            stiff = {"stiffness_nm_per_rad": STIFF, "damping_nms_per_rad": STIFF / 50}
+            stiff = {"stiffness_nm_per_rad": stiffness, "damping_nms_per_rad": stiffness / 50}
             fields |= {"kind": "parallel", **stiff, "active": EVERY_PHASE}
-        return cls(**{**fields, "own_moment": True})
-
-
-STIFF = 400.0
-"""Stiffness [N m/rad] of what stands for a lock while a search begins."""
+        return cls(**{**fields, "own_moment": True, "help_price": price})
 
 
 class LegDevices(Value):
@@ -257,10 +258,6 @@ class Devices(LegDevices):
                 changes[name] = own.replace(**table(own))
         found: Devices = self.replace(**changes)
         return found
-
-    def eased(self) -> Devices:
-        """All of them with the help of the walker where it may give none in the end."""
-        return self.changed(EasedDevice.of)
 
     def sentence(self) -> str:
         """All devices in words; empty if there is none."""

@@ -23,13 +23,14 @@ from ergowalk.transcription.motion import body_motion, device_moment
 
 Array = NDArray[np.float64]
 
-PRICES = (1.0, 30.0, 1000.0)
-"""Prices of the squared help per kg [s3/m2], one search after the other."""
+STEPS = ((1.0, 400.0), (30.0, 1600.0), (1000.0, 6400.0))
+"""Prices of the squared help per kg [s3/m2], one search after the other, and the stiffness
+[N m/rad] of what stands for a lock."""
 
 
 def needs_easing(problem: GaitProblem) -> bool:
     """Whether a device leaves no room for an own moment."""
-    return any(isinstance(d, EasedDevice) for d in problem.devices.eased().everything())
+    return any(EasedDevice.needed(device) for device in problem.devices.everything())
 
 
 def eased(search: OrderSearch, bare: OrderSearch, result: StageResult) -> StageResult:
@@ -38,20 +39,18 @@ def eased(search: OrderSearch, bare: OrderSearch, result: StageResult) -> StageR
     ``result`` is where it begins: the gait of a search ``bare`` without those devices.
     """
     problem, stage = search.problem, bare
-    for i, price in enumerate(PRICES):
+    for i, (price, stiffness) in enumerate(STEPS):
         if not result.minimum.converged:
             break
-        before, stage = (
-            stage,
-            _search(search, problem.replace(devices=helped(problem.devices, price))),
-        )
+        devices, before = helped(problem.devices, price, stiffness), stage
+        stage = _search(search, problem.replace(devices=devices))
         mesh, words = result.collocation.mesh, f"devices helped at {price:g}"
+        start = Start.at(result.trajectory, fitted(stage, before, result))
         if i == 0:
-            start = Start.at(result.trajectory, fitted(stage, before, result))
             solver = Ipopt(tolerance=1e-3, barrier_end=SEARCH_BARRIER)
             result = stage.stage(words, mesh, start, solver)
         else:
-            result = stage.stage(words, mesh, Start.at(result.trajectory), before=result)
+            result = stage.stage(words, mesh, start, before=result)
     start = Start.at(result.trajectory, fitted(search, stage, result))
     return search.stage("devices alone", result.collocation.mesh, start)
 
@@ -61,11 +60,9 @@ def without_devices(search: OrderSearch) -> OrderSearch:
     return _search(search, search.problem.replace(devices=Devices()))
 
 
-def helped(devices: Devices, price: float) -> Devices:
-    """The devices with the help of the walker at a price."""
-    return devices.eased().changed(
-        lambda d: d.replace(help_price=price) if isinstance(d, EasedDevice) else d
-    )
+def helped(devices: Devices, price: float, stiffness: float) -> Devices:
+    """The devices with the help of the walker at a price, locks as stiff springs."""
+    return devices.changed(lambda device: EasedDevice.of(device, price, stiffness))
 
 
 def fitted(search: OrderSearch, before: OrderSearch, result: StageResult) -> Guess:

@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from ergowalk.comparison.reading import StrideCurves, stride_curves
+from ergowalk.comparison.reading import StrideCurves, legs_with_curves, stride_curves
 from ergowalk.comparison.result import Comparison, Extremes, SignalComparison
 from ergowalk.comparison.signals import ANGLE_TOLERANCE_DEG, COMPARED, SD_FLOOR, ComparedSignal
 from ergowalk.corridors import HumanGait
@@ -26,7 +26,7 @@ _ROUNDING = 1e-9  # SDs: a curve exactly on a bound is inside
 
 
 def compare(dataset: xr.Dataset, human: HumanGait) -> Comparison:
-    """Leg 1 of a gait against human data, Figures 3-10.
+    """Leg 1 of a gait against human data, Figures 3-10; leg 2 too, where it does not mirror leg 1.
 
     Parameters
     ----------
@@ -40,13 +40,15 @@ def compare(dataset: xr.Dataset, human: HumanGait) -> Comparison:
     GaitFileError
         If a variable is missing or not finite, or the times do not run forward.
     """
-    curves = stride_curves(dataset)
     known = [signal for signal in COMPARED if _has_spread(signal.name, human)]
-    return Comparison(
-        human.name,
-        tuple(_compare(signal, curves, human) for signal in known),
-        tuple(signal.name for signal in COMPARED if signal not in known),
-    )
+    missing = tuple(signal.name for signal in COMPARED if signal not in known)
+    found: Comparison | None = None
+    for leg in reversed(legs_with_curves(dataset)):
+        curves = stride_curves(dataset, leg)
+        signals = tuple(_compare(signal, curves, human) for signal in known)
+        found = Comparison(human.name, signals, missing, leg, found)
+    assert found is not None
+    return found
 
 
 def stride_mean(fraction: Array, values: Array) -> float:

@@ -25,7 +25,7 @@ DEFAULT_SOURCE = "winter-natural"
 
 @dataclass(frozen=True)
 class StrideCurves:
-    """Leg 1's curves over the stride: ``fraction`` 0 ... 1 (n,), and (n,) values by signal."""
+    """A leg's curves over its stride: ``fraction`` 0 ... 1 (n,), and (n,) values by signal."""
 
     fraction: Array
     values: dict[str, Array]
@@ -69,8 +69,15 @@ def body_of(dataset: xr.Dataset) -> Body:
         raise _unusable_attribute("body_parameters", rule, error) from None
 
 
-def stride_curves(dataset: xr.Dataset) -> StrideCurves:
-    """The eight signals of leg 1 in degrees, N/kg and N m/kg, in the paper's signs.
+def legs_with_curves(dataset: xr.Dataset) -> tuple[int, ...]:
+    """The legs whose curves are not told by the other's: 1, or 1 and 2."""
+    return (1, 2) if "rhythm_leg_2" in dataset.attrs else (1,)
+
+
+def stride_curves(dataset: xr.Dataset, leg: int = 1) -> StrideCurves:
+    """The eight signals of a leg in degrees, N/kg and N m/kg, in the paper's signs.
+
+    They begin with the heel contact of that leg.
 
     Raises
     ------
@@ -82,13 +89,35 @@ def stride_curves(dataset: xr.Dataset) -> StrideCurves:
     for signal in COMPARED:
         if signal.name.startswith("reaction"):
             axis = signal.name[-1]
-            force = curve(dataset, "ground_reaction_force", {"leg": 1, "axis": axis})
+            force = curve(dataset, "ground_reaction_force", {"leg": leg, "axis": axis})
             values[signal.name] = force / mass
         else:
             joint, kind = signal.name.split("_")
-            raw = curve(dataset, f"joint_{kind}", {"leg": 1, "joint": joint})
+            raw = curve(dataset, f"joint_{kind}", {"leg": leg, "joint": joint})
             values[signal.name] = np.degrees(raw) if kind == "angle" else raw / mass
-    return StrideCurves(stride_fraction(dataset), values)
+    fraction = stride_fraction(dataset)
+    if leg == 1:
+        return StrideCurves(fraction, values)
+    contact = heel_contact(dataset)
+    first = int(np.searchsorted(fraction, contact + _SAME, "right")) - 1  # the side after it
+    later = np.concatenate([fraction[first:] - contact, fraction[: first + 1] + 1 - contact])
+    later[[0, -1]] = 0.0, 1.0
+    turned = {n: np.concatenate([v[first:], v[: first + 1]]) for n, v in values.items()}
+    return StrideCurves(later, turned)
+
+
+def heel_contact(dataset: xr.Dataset) -> float:
+    """Heel contact of leg 2 as a fraction of the stride of leg 1.
+
+    Raises
+    ------
+    GaitFileError
+        If the attribute ``rhythm`` does not tell.
+    """
+    try:
+        return float(json.loads(str(dataset.attrs["rhythm"]))["toe_tip_start"])
+    except (KeyError, TypeError, ValueError) as error:
+        raise _unusable_attribute("rhythm", "a JSON object with toe_tip_start", error) from None
 
 
 def curve(
@@ -131,6 +160,10 @@ def stride_fraction(dataset: xr.Dataset) -> Array:
         )
     fraction: Array = time / time[-1]
     return fraction
+
+
+_SAME = 1e-9
+"""Fractions closer than this are one instant."""
 
 
 def _unusable_attribute(name: str, rule: str, error: Exception) -> GaitFileError:

@@ -62,12 +62,15 @@ class SignalComparison:
 class Comparison:
     """All signals that the table of human data has.
 
-    ``missing`` names those that it lacks, or whose SD is zero all along.
+    ``missing`` names those that it lacks, or whose SD is zero all along. ``other`` is the
+    comparison of the other leg, where that has curves of its own.
     """
 
     source: str
     signals: tuple[SignalComparison, ...]
     missing: tuple[str, ...] = ()
+    leg: int = 1
+    other: Comparison | None = None
 
     def __getitem__(self, name: str) -> SignalComparison:
         """The comparison of one signal; KeyError if the table lacks it."""
@@ -81,7 +84,7 @@ class Comparison:
         rows = [_HEADER, *(_row(signal) for signal in self.signals)]
         widths = [max(len(row[i]) for row in rows) for i in range(len(_HEADER))]
         spread = " between people" if self.source in BUILT_IN else ""
-        lines = [f"leg 1 against {self.source}, mean +- SD{spread}"]
+        lines = [f"leg {self.leg} against {self.source}, mean +- SD{spread}"]
         for row in rows:
             cells = [row[0].ljust(widths[0])]
             cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]
@@ -90,6 +93,8 @@ class Comparison:
             lines.append(f"an SD under {SD_FLOOR:.0%} of the signal's largest SD counts as that")
         if self.missing:
             lines.append(f"no mean and SD in {self.source}: {', '.join(self.missing)}")
+        if self.other is not None:
+            lines.append(self.other.table())
         return "\n".join(lines)
 
     def as_dict(self) -> dict[str, Any]:
@@ -100,10 +105,11 @@ class Comparison:
             signals[signal.name] = values
         return {
             "source": self.source,
-            "leg": 1,
+            "leg": self.leg,
             "sd_floor": SD_FLOOR,
             "signals": signals,
             "missing": list(self.missing),
+            **({} if self.other is None else {"other_leg": self.other.as_dict()}),
         }
 
 

@@ -18,6 +18,7 @@ from ergowalk.comparison import (
     StrideCurves,
     contact_phases,
     curve,
+    legs_with_curves,
     stride_curves,
     stride_fraction,
 )
@@ -33,12 +34,17 @@ _DIFFERENT = 0.05  # deg: from here on the problem's corridor is not the band of
 
 @dataclass(frozen=True)
 class Material:
-    """What the curves of a gait are drawn from; ``corridors`` by signal, where they are drawn."""
+    """What the curves of a gait are drawn from.
+
+    ``corridors`` by signal, where they are drawn; ``other`` are the curves of leg 2 where that does
+    not mirror leg 1.
+    """
 
     gait: StrideCurves
     human: HumanGait
     corridors: dict[str, tuple[Array, Array]]
     phases: tuple[PhaseSpan, ...]
+    other: StrideCurves | None = None
 
     @classmethod
     def of(cls, dataset: xr.Dataset, human: HumanGait) -> Material:
@@ -55,6 +61,7 @@ class Material:
             human,
             {name: bounds for name, bounds in found.items() if bounds is not None},
             contact_phases(dataset),
+            stride_curves(dataset, 2) if 2 in legs_with_curves(dataset) else None,
         )
 
 
@@ -73,10 +80,15 @@ def draw_curve(
         axes.plot(percent, bound, color=style.CORRIDOR, linewidth=hand.corridor, zorder=2.5)
     values = material.gait.values[signal.name]
     axes.plot(percent, values, color=style.GAIT, linewidth=hand.optimum, zorder=4)
+    if material.other is not None:
+        other = material.other
+        percent, values = 100 * other.fraction, other.values[signal.name]
+        axes.plot(percent, values, color=style.LEG_2, linewidth=hand.optimum, zorder=3.5)
     axes.axhline(0.0, color="black", linewidth=0.5, zorder=2)
     axes.set_xlim(0, 100)
     axes.set_xticks(range(0, 101, 20))
-    axes.set_xlabel("stride of leg 1 [%]")
+    whose = "leg 1" if material.other is None else "each leg; phases of leg 1"
+    axes.set_xlabel(f"stride of {whose} [%]")
     axes.set_ylabel(axis_label(signal, hand))
     _mark_phases(axes, material.phases, hand.phases)
 
@@ -188,6 +200,10 @@ def curve_keys(
     keys: list[Line2D | Patch] = [
         Line2D([], [], color=style.GAIT, linewidth=hand.optimum, label="optimum, leg 1")
     ]
+    if material.other is not None:
+        keys.append(
+            Line2D([], [], color=style.LEG_2, linewidth=hand.optimum, label="optimum, leg 2")
+        )
     if any(name in material.human.curves for name in names):
         name = material.human.name.replace("\\", "/").rsplit("/", 1)[-1]
         label = f"human mean ({name if len(name) <= 24 else name[:23] + '…'})"

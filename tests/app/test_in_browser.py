@@ -14,7 +14,6 @@ from urllib.parse import urlsplit
 import pytest
 
 from ergowalk.app.results import store
-from ergowalk.body import Body
 from ergowalk.problem import preset
 from ergowalk.problem.files import problem_to_toml
 from ergowalk.solution import Solution
@@ -355,12 +354,9 @@ def test_a_server_that_went_away_is_told(chromium: Any) -> None:
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("width", WIDTHS)
-def test_everybody_can_read_every_screen(
-    chromium: Any, url: str, width: int, scheme: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_everybody_can_read_every_screen(chromium: Any, url: str, width: int, scheme: str) -> None:
     """No finding of axe-core at all, nothing wider than the screen."""
     axe = pytest.importorskip("axe_playwright_python.sync_playwright").Axe()
-    monkeypatch.setattr(Body, "from_height_mass", lambda *_, **__: Body(), raising=False)
     look = {"viewport": {"width": width, "height": 844}, "color_scheme": scheme}
     visitor = Visitor(chromium, url, **look)
     page = visitor.page

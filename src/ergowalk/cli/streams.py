@@ -36,7 +36,9 @@ def emit(text: str) -> None:
 
 def emit_json(value: dict[str, Any]) -> None:
     """Print an answer as one JSON object; what is not a number becomes null."""
-    emit(json.dumps(_plain(value), indent=2, allow_nan=False))
+    from ergowalk.values import as_json  # with pydantic, which help needs not
+
+    emit(json.dumps(as_json(value), indent=2, allow_nan=False))
 
 
 def note(line: str) -> None:
@@ -168,11 +170,3 @@ def _abandon(stream: TextIO) -> None:
     """Let what is still buffered go nowhere; the interpreter flushes it again at exit."""
     with open(os.devnull, "w") as nowhere:
         os.dup2(nowhere.fileno(), stream.fileno())
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _plain(v) for key, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(v) for v in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ergowalk.comparison.signals import SD_FLOOR
 from ergowalk.corridors import BUILT_IN, SIGNALS
+from ergowalk.values import as_json
 
 Array = NDArray[np.float64]
 
@@ -96,8 +97,8 @@ class Comparison:
         """The comparison as plain values that ``json.dumps`` takes; None stands for NaN."""
         signals = {}
         for signal in self.signals:
-            values = {k: _finite(v) for k, v in asdict(signal).items() if k != "name"}
-            signals[signal.name] = values
+            values = {k: v for k, v in asdict(signal).items() if k != "name"}
+            signals[signal.name] = as_json(values)
         return {
             "source": self.source,
             "leg": 1,
@@ -105,12 +106,6 @@ class Comparison:
             "signals": signals,
             "missing": list(self.missing),
         }
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {k: _finite(v) for k, v in value.items()}
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _row(signal: SignalComparison) -> tuple[str, ...]:

@@ -56,6 +56,17 @@ def app(command: Sequence[str] | None = STAND_IN, **options: Any) -> Iterator[st
         assert not thread.is_alive()
 
 
+@contextmanager
+def visit(
+    command: Sequence[str] | None = STAND_IN, **options: Any
+) -> Iterator[tuple[Browser, Page]]:
+    """The browser and the open page of somebody at a running app."""
+    with app(command, **options) as url:
+        browser = Browser(url)
+        with browser.page() as page:
+            yield browser, page
+
+
 class Answer:
     """Status, headers and body of a response."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import http.client
 import json
+import math
 import sys
 import threading
 import time
@@ -134,10 +135,11 @@ class Page:
         self._response = response
         self.jobs: list[dict[str, Any]] = []
 
-    def next(self) -> None:
-        """Wait for an event."""
+    def next(self, deadline: float = math.inf) -> None:
+        """Wait for an event; a server that has nothing to tell says so now and then."""
         name = ""
         while line := self._response.readline().decode():
+            assert time.monotonic() < deadline, self.jobs
             if line.startswith("event: "):
                 name = line[7:].strip()
             elif line.startswith("data: "):
@@ -154,7 +156,7 @@ class Page:
         deadline = time.monotonic() + 20
         while not condition(self.jobs):
             assert time.monotonic() < deadline, self.jobs
-            self.next()
+            self.next(deadline)
         return self.jobs
 
     def pid(self, number: int = 1) -> int:

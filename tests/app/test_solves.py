@@ -97,10 +97,10 @@ def test_a_worker_that_talks_nonsense_is_a_sentence() -> None:
 
 
 def test_a_solve_that_takes_too_long_is_ended_with_a_sentence() -> None:
-    with visit(time_limit_s=0.5) as (browser, page):
+    with visit(time_limit_s=3.0) as (browser, page):  # time to start on a busy machine too
         browser.solve("endless")
         pid = page.pid()
-        assert "took longer than 0.5 s and was ended; make" in page.ended()["message"]
+        assert "took longer than 3 s and was ended; make" in page.ended()["message"]
         assert gone(pid)
 
 

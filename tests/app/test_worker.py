@@ -17,6 +17,7 @@ from ergowalk.app.results import DOWNLOADS, PAYLOAD, store
 from ergowalk.problem import preset
 from ergowalk.problem.files import problem_from_toml, problem_to_toml
 from ergowalk.solution import Progress, Solution
+from ergowalk.values import as_json
 
 from .serving import STAND_IN, gone
 
@@ -79,7 +80,7 @@ def test_a_solve_is_an_order_carried_out(
 
 
 def test_what_is_no_number_reaches_the_page_as_none() -> None:
-    plain = worker._plain({"a": [float("nan"), 1.0, (float("inf"),)], "b": "c"})
+    plain = as_json({"a": [float("nan"), 1.0, (float("inf"),)], "b": "c"})
     assert plain == {"a": [None, 1.0, [None]], "b": "c"}
 
 

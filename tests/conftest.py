@@ -1,10 +1,13 @@
-"""Fixtures shared by all tests: one solved gait for the whole session."""
+"""Fixtures shared by all tests: one solved gait for the whole session, and a real browser."""
 
 from __future__ import annotations
 
 import os
+import shutil
 import time
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 import xarray as xr
@@ -38,3 +41,17 @@ def paper_gait(paper_gait_file: Path) -> xr.Dataset:
     """The dataset of :func:`paper_gait_file`, loaded."""
     with xr.open_dataset(paper_gait_file) as stored:
         return stored.load()
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Any]:
+    """Chromium of the system; the test is skipped where there is none."""
+    sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+    program = shutil.which("chromium")
+    if program is None:
+        pytest.skip("chromium is not installed")
+    with sync_api.sync_playwright() as playwright:
+        # the sandbox of Chromium does not start for root, as in most containers
+        browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        yield browser
+        browser.close()

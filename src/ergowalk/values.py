@@ -8,6 +8,7 @@ schema follow from the declaration. What pydantic finds wrong is told as one
 from __future__ import annotations
 
 import difflib
+import math
 from typing import Annotated, Any, ClassVar, NoReturn
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -41,6 +42,15 @@ class Value(BaseModel):
         """A copy with some fields changed, validated anew."""
         fields = {name: getattr(self, name) for name in type(self).model_fields}
         return type(self)(**{**fields, **changes})
+
+
+def as_json(value: Any) -> Any:
+    """The value, plain or made of lists and tables, with None for numbers that JSON lacks."""
+    if isinstance(value, dict):
+        return {key: as_json(v) for key, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [as_json(v) for v in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def is_key(field: FieldInfo) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import http.client
 import json
+import math
 import sys
 import threading
 import time
@@ -54,6 +55,17 @@ def app(command: Sequence[str] | None = STAND_IN, **options: Any) -> Iterator[st
         ending[0]()
         thread.join(20)
         assert not thread.is_alive()
+
+
+@contextmanager
+def visit(
+    command: Sequence[str] | None = STAND_IN, **options: Any
+) -> Iterator[tuple[Browser, Page]]:
+    """The browser and the open page of somebody at a running app."""
+    with app(command, **options) as url:
+        browser = Browser(url)
+        with browser.page() as page:
+            yield browser, page
 
 
 class Answer:
@@ -123,10 +135,11 @@ class Page:
         self._response = response
         self.jobs: list[dict[str, Any]] = []
 
-    def next(self) -> None:
-        """Wait for an event."""
+    def next(self, deadline: float = math.inf) -> None:
+        """Wait for an event; a server that has nothing to tell says so now and then."""
         name = ""
         while line := self._response.readline().decode():
+            assert time.monotonic() < deadline, self.jobs
             if line.startswith("event: "):
                 name = line[7:].strip()
             elif line.startswith("data: "):
@@ -143,7 +156,7 @@ class Page:
         deadline = time.monotonic() + 20
         while not condition(self.jobs):
             assert time.monotonic() < deadline, self.jobs
-            self.next()
+            self.next(deadline)
         return self.jobs
 
     def pid(self, number: int = 1) -> int:

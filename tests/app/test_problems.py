@@ -115,42 +115,21 @@ def sized(**size: Any) -> bytes:
     return json.dumps(json.loads(asked()) | {"size": size}).encode()
 
 
-@pytest.fixture
-def scaling(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A body whose trunk is scaled with the mass."""
-
-    def from_height_mass(
-        cls: type[Body], height_m: float, mass_kg: float, sex: str = "male"
-    ) -> Body:
-        if sex not in ("male", "female"):
-            raise BodyError("no such table", "use 'male' or 'female'", field="sex", value=sex)
-        share = mass_kg / 73.18
-        return Body(trunk_mass_kg=46.7 * share, trunk_inertia_kgm2=7.096 * share)
-
-    monkeypatch.setattr(Body, "from_height_mass", classmethod(from_height_mass), raising=False)
-
-
-@pytest.mark.usefixtures("scaling")
 def test_the_body_is_scaled_to_height_and_mass() -> None:
-    assert form()["size"] is True
     problem = asked_problem(sized(height_m=1.8, mass_kg=80, sex="female"))
-    assert problem.body.trunk_mass_kg == pytest.approx(46.7 * 80 / 73.18)
-    with pytest.raises(BodyError, match=r"^sex = 'x': no such table"):
+    assert problem.body == Body.from_height_mass(1.8, 80, sex="female")
+    assert asked_problem(sized(height_m=1.8, mass_kg=80)).body == Body.from_height_mass(1.8, 80)
+    with pytest.raises(BodyError, match=r"^sex = 'x': "):
         asked_problem(sized(height_m=1.8, mass_kg=80, sex="x"))
-    assert asked_problem(sized(height_m=1.8, mass_kg=80)) == problem
 
 
-@pytest.mark.usefixtures("scaling")
 @pytest.mark.parametrize("mass", ["80 kg", None, True, []])
 def test_a_mass_that_is_no_number_is_refused(mass: Any) -> None:
     with pytest.raises(ProblemError, match=r"^mass_kg.*: should be a valid number; give one"):
         asked_problem(sized(height_m=1.8, mass_kg=mass))
 
 
-def test_where_bodies_cannot_be_scaled_the_form_does_not_ask(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.delattr(Body, "from_height_mass", raising=False)
-    assert form()["size"] is False
+def test_a_size_that_is_no_table_is_refused() -> None:
+    content = json.dumps(json.loads(asked()) | {"size": 1.8}).encode()
     with pytest.raises(ProblemError, match="^size: cannot be used; leave it out"):
-        asked_problem(sized(height_m=1.8, mass_kg=80))
+        asked_problem(content)

@@ -6,7 +6,6 @@ import json
 import subprocess
 import sys
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -18,6 +17,7 @@ from ergowalk.app.results import DOWNLOADS, PAYLOAD, store
 from ergowalk.problem import preset
 from ergowalk.problem.files import problem_from_toml, problem_to_toml
 from ergowalk.solution import Progress, Solution
+from ergowalk.values import as_json
 
 from .serving import STAND_IN, gone
 
@@ -80,7 +80,7 @@ def test_a_solve_is_an_order_carried_out(
 
 
 def test_what_is_no_number_reaches_the_page_as_none() -> None:
-    plain = worker._plain({"a": [float("nan"), 1.0, (float("inf"),)], "b": "c"})
+    plain = as_json({"a": [float("nan"), 1.0, (float("inf"),)], "b": "c"})
     assert plain == {"a": [None, 1.0, [None]], "b": "c"}
 
 
@@ -108,9 +108,9 @@ def test_a_worker_ends_when_its_parent_is_gone() -> None:
 
 @pytest.mark.parametrize(
     ("installed", "name"),
-    [((), ""), (("ergowalk.film",), "film.gif"), (("ergowalk.film", "av"), "film.mp4")],
+    [((), "film.gif"), (("av",), "film.mp4")],
 )
-def test_a_film_is_offered_only_where_something_makes_it(
+def test_a_film_is_an_mp4_where_something_makes_it(
     installed: tuple[str, ...], name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(film, "find_spec", lambda name: name if name in installed else None)
@@ -120,11 +120,8 @@ def test_a_film_is_offered_only_where_something_makes_it(
 def test_a_film_is_made_from_what_the_viewer_shows(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    maker = SimpleNamespace(
-        FilmOptions=lambda format: format,
-        film=lambda payloads, options: f"{options} of {payloads}".encode(),
-    )
-    monkeypatch.setattr(film, "import_module", lambda name: maker)
+    monkeypatch.setattr("ergowalk.film.FilmOptions", lambda format: format)
+    monkeypatch.setattr("ergowalk.film.film", lambda gaits, how: f"{how} of {gaits}".encode())
     (tmp_path / PAYLOAD).write_text('{"label": "a gait"}', "utf-8")
     worker.film_task({"folder": str(tmp_path), "name": "film.gif"}, lambda message: None)
     assert (tmp_path / "film.gif").read_bytes() == b"gif of [{'label': 'a gait'}]"

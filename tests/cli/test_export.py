@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from ergowalk.cli.parser import FORMATS as CHOICES
+from ergowalk.cli.arguments.showing import FORMATS as CHOICES
 from ergowalk.cli.parser import build_parser
 from ergowalk.io import FORMATS, RATE, STRIDES
 from ergowalk.solution import Solution

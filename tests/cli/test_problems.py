@@ -10,7 +10,7 @@ import pytest
 
 from ergowalk.anthropometry import MEASURED, Person
 from ergowalk.body import Body
-from ergowalk.cli.parser import PERSON_LENGTHS
+from ergowalk.cli.arguments.problems import PERSON_LENGTHS
 from ergowalk.problem import DEFAULT_PRESET, PRESETS, preset
 from ergowalk.problem.files import json_schema, problem_from_toml
 from ergowalk.problem.scaling import for_person

@@ -14,6 +14,8 @@ import pytest
 import xarray as xr
 
 import ergowalk
+from ergowalk.cli.entry import COMMANDS, runner
+from ergowalk.cli.parser import build_parser
 from ergowalk.cli.streams import ProgressLine, emit
 
 COMMAND = [sys.executable, "-m", "ergowalk"]
@@ -44,6 +46,12 @@ def test_light_commands_import_nothing_heavy(command):
         check=False, capture_output=True, text=True, env=ENVIRONMENT, timeout=60,
     )  # fmt: skip
     assert (answer.returncode, answer.stderr) == (0, "")
+
+
+def test_every_command_has_what_runs_it():
+    (choice,) = [a for a in build_parser()._actions if a.dest == "command"]
+    assert list(choice.choices) == list(COMMANDS)
+    assert all(callable(runner(command)) for command in COMMANDS)
 
 
 def test_a_closed_pipe_is_no_error():

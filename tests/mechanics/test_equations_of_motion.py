@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -9,6 +11,7 @@ from hypothesis import given
 from ergowalk.body import Body
 from ergowalk.mechanics.dynamics import (
     COORDINATES,
+    Coefficients,
     LegMoments,
     accelerations,
     applied_load,
@@ -21,7 +24,7 @@ from ergowalk.mechanics.dynamics import (
     total_reaction,
 )
 from ergowalk.mechanics.foot import foot_balance, toe_balance
-from ergowalk.mechanics.kinematics import leg_points
+from ergowalk.mechanics.kinematics import BodyMotion, leg_points
 
 from .independent import kane_residual, newton_euler
 from .spaces import (
@@ -127,15 +130,22 @@ def test_printed_sign_of_the_shank_line_fails_newton_and_euler() -> None:
     assert wrong[3] > 2.0
 
 
+def inverse_dynamics(
+    c: Coefficients, motion: BodyMotion, trailing: Array, ankle: float
+) -> tuple[Any, Any]:
+    """Reactions of both legs and (hip, knee, ankle) moments of each, under a trailing leg."""
+    total = total_reaction(c, motion)
+    reactions = (total[0] - trailing[0], total[1] - trailing[1]), (trailing[0], trailing[1])
+    return reactions, joint_moments_from(c, motion, reactions, ankle)
+
+
 @LAW
 @given(bodies, states, numbers(2, 800.0), numbers(1, 150.0))
 def test_joint_moments_satisfy_the_five_moment_lines(
     body: Body, state: State, trailing: Array, ankle: Array
 ) -> None:
     motion, c = state.motion(), coefficients(body)
-    total = total_reaction(c, motion)
-    reactions = (total[0] - trailing[0], total[1] - trailing[1]), (trailing[0], trailing[1])
-    legs = joint_moments_from(c, motion, reactions, ankle[0])
+    reactions, legs = inverse_dynamics(c, motion, trailing, ankle[0])
     moments = tuple(LegMoments(*leg, metatarsal=0.0) for leg in legs)
     left = np.array(inertial_load(c, motion))
     right = np.array(applied_load(c, motion, (moments[0], moments[1]), reactions))
@@ -150,9 +160,7 @@ def test_forward_dynamics_undoes_inverse_dynamics(
     body: Body, state: State, trailing: Array, ankle: Array
 ) -> None:
     motion, c = state.motion(), coefficients(body)
-    total = total_reaction(c, motion)
-    reactions = (total[0] - trailing[0], total[1] - trailing[1]), (trailing[0], trailing[1])
-    legs = joint_moments_from(c, motion, reactions, ankle[0])
+    reactions, legs = inverse_dynamics(c, motion, trailing, ankle[0])
     moments = LegMoments(*legs[0], metatarsal=0.0), LegMoments(*legs[1], metatarsal=0.0)
     at_rest = motion_of(state.positions, state.rates)  # knows nothing of the accelerations
     result = forward_dynamics(c, at_rest, moments, reactions)

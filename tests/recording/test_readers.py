@@ -36,6 +36,15 @@ def assert_same_markers(found: Recording, tolerance: float) -> None:
         np.testing.assert_allclose(found.markers[name], values, atol=tolerance)
 
 
+def assert_same_plates(found: Recording, tolerance: float) -> None:
+    """Both plates of the made-up walk: forces to ``tolerance`` N, moments to 1e-3 N m."""
+    known = WHOLE.in_metres("mm")
+    for plate, original in zip(found.in_metres("mm").plates, known.plates, strict=True):
+        np.testing.assert_allclose(plate.force, original.force, atol=tolerance)
+        moment = original.moment_about_origin()
+        np.testing.assert_allclose(plate.moment_about_origin(), moment, atol=1e-3)
+
+
 def test_trc_gives_its_markers(tmp_path: Path) -> None:
     found = read_recording([written(tmp_path, "walk.trc", trc_text(WHOLE))])
     assert found.unit == "mm"
@@ -47,11 +56,7 @@ def test_mot_gives_its_plates_beside_the_markers(tmp_path: Path) -> None:
     files = [("walk.trc", trc_text(WHOLE)), ("grf.mot", mot_text(WHOLE))]
     found = read_recording([written(tmp_path, *file) for file in files])
     assert len(found.plates) == 2
-    known = WHOLE.in_metres("mm")
-    for plate, original in zip(found.in_metres("mm").plates, known.plates, strict=True):
-        np.testing.assert_allclose(plate.force, original.force, atol=1e-6)
-        moment = original.moment_about_origin()
-        np.testing.assert_allclose(plate.moment_about_origin(), moment, atol=1e-3)  # N m
+    assert_same_plates(found, 1e-6)
 
 
 @needs_ezc3d
@@ -60,11 +65,7 @@ def test_c3d_gives_markers_and_plates(tmp_path: Path) -> None:
     found = read_recording([written(tmp_path, "walk.c3d", c3d_bytes(WHOLE))])
     assert found.unit == "mm"
     assert_same_markers(found, 1e-3)  # single precision
-    known = WHOLE.in_metres("mm")
-    for plate, original in zip(found.in_metres("mm").plates, known.plates, strict=True):
-        np.testing.assert_allclose(plate.force, original.force, atol=1e-3)
-        moment = original.moment_about_origin()
-        np.testing.assert_allclose(plate.moment_about_origin(), moment, atol=1e-3)  # N m
+    assert_same_plates(found, 1e-3)  # single precision
 
 
 @needs_ezc3d

@@ -10,6 +10,7 @@ import pytest
 
 from ergowalk.problem import preset
 from ergowalk.study import Sweep, sweep
+from ergowalk.study.event_loop import event_loop
 from ergowalk.study.store import EFFORT, INDEX
 
 STANDINS = f"{__name__.rpartition('.')[0]}.standins"
@@ -20,9 +21,16 @@ def here() -> Iterator[str]:
     """Address of a cluster of two threads in this process; its nurseries are processes."""
     distributed = pytest.importorskip("distributed", reason="dask is not installed")
     pytest.importorskip("pyarrow", reason="pyarrow is not installed")
-    with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=False, dashboard_address="127.0.0.1:0"
-    ) as cluster:
+    with (
+        event_loop() as loop,
+        distributed.LocalCluster(
+            n_workers=2,
+            threads_per_worker=1,
+            processes=False,
+            dashboard_address="127.0.0.1:0",
+            loop=loop,
+        ) as cluster,
+    ):
         yield cluster.scheduler_address
 
 

@@ -184,7 +184,7 @@ if __name__ == "__main__":
 
 
 @contextlib.contextmanager
-def client(tmp_path: Path, workers: int) -> Iterator[subprocess.Popen[str]]:
+def client(tmp_path: Path, *where: str) -> Iterator[subprocess.Popen[str]]:
     """``ergowalk sweep`` in a process of its own, with the stand-in."""
     (tmp_path / "client.py").write_text(CLIENT)
     (tmp_path / "problem.toml").write_text(
@@ -196,7 +196,7 @@ def client(tmp_path: Path, workers: int) -> Iterator[subprocess.Popen[str]]:
     )
     command = [sys.executable, "client.py", "sweep", "small.toml", "-o", "out"]
     process = subprocess.Popen(
-        [*command, "--workers", str(workers), SOLVER],
+        [*command, *where, SOLVER],
         cwd=tmp_path,
         env=ENVIRONMENT,
         stdout=subprocess.PIPE,
@@ -210,11 +210,20 @@ def client(tmp_path: Path, workers: int) -> Iterator[subprocess.Popen[str]]:
         process.communicate()
 
 
+def test_a_scheduler_that_cannot_be_has_one_line_and_no_wait_at_exit(tmp_path: Path) -> None:
+    """A client that was never connected would try to say goodbye for 40 s, and complain."""
+    with client(tmp_path, "--scheduler", "nonsense") as process:
+        out, err = process.communicate(timeout=30)
+    assert (process.returncode, out) == (2, "")
+    assert "scheduler = 'nonsense': there is no scheduler" in err.splitlines()[-1]
+    assert "Traceback" not in err
+
+
 def test_a_client_that_is_killed_leaves_whole_results_and_nobody_at_work(
     here: str, tmp_path: Path, undisturbed: dict[str, Any]
 ) -> None:
     folder = tmp_path / "out"
-    with client(tmp_path, workers=2) as process:
+    with client(tmp_path, "--workers", "2") as process:
         until(lambda: len(list(folder.glob("cases/*/*.json"))) >= 2, "two results")
         process.kill()
         process.wait()
@@ -229,7 +238,7 @@ def test_a_client_that_is_killed_leaves_whole_results_and_nobody_at_work(
 
 def test_an_interrupt_ends_the_sweep_with_its_index_written(tmp_path: Path) -> None:
     folder = tmp_path / "out"
-    with client(tmp_path, workers=1) as process:
+    with client(tmp_path, "--workers", "1") as process:
         until(lambda: len(list(folder.glob("cases/*/*.json"))) >= 1, "a result")
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=PATIENCE_S)

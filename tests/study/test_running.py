@@ -12,6 +12,7 @@ import pytest
 from ergowalk.errors import OutputError, SweepError
 from ergowalk.solution import Solution
 from ergowalk.study import Sweep, Tally, collect, sweep
+from ergowalk.study.event_loop import event_loop
 from ergowalk.study.store import Store
 
 from . import standins
@@ -165,6 +166,43 @@ def test_workers_and_scheduler_exclude_each_other(tmp_path: Path) -> None:
 def test_a_solver_that_cannot_be_loaded_is_one_line(here: str, tmp_path: Path) -> None:
     with pytest.raises(SweepError, match="solver = 'nowhere:walk': cannot be loaded by worker .*"):
         sweep(small(), tmp_path / "out", scheduler=here, solver="nowhere:walk")
+
+
+def test_no_thread_of_a_sweep_has_only_the_ten_seconds_of_dask_to_start(
+    here: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A starved machine takes longer; what Dask starts by itself would not wait."""
+    monkeypatch.setattr("distributed.utils.LoopRunner._start_unlocked", only_a_running_loop)
+    one = small(grid={"step_length_m": [0.7], "stride_time_s": [1.2]})
+    found = run(one, tmp_path / "out", here)
+    assert bool((found["status"] == "accepted").all())
+
+
+def only_a_running_loop(runner: Any) -> None:
+    assert runner._loop is not None
+    assert runner._loop.asyncio_loop.is_running()
+    runner._started = True
+
+
+def test_a_thread_that_never_comes_to_run_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ergowalk.study.event_loop.START_S", 0.0)
+    monkeypatch.setattr("threading.Thread.start", lambda thread: None)
+    with (
+        pytest.raises(SweepError, match="cluster: could not start a thread within 0 s; give the"),
+        event_loop(),
+    ):
+        pass
+
+
+def test_workers_that_cannot_be_started_are_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def starved(**_: Any) -> None:
+        raise RuntimeError("Nanny failed\nto start.")
+
+    monkeypatch.setattr("distributed.LocalCluster", starved)
+    with pytest.raises(SweepError, match=r"workers = 2: cannot be started \(Nanny failed to start"):
+        sweep(small(), tmp_path / "out", workers=2)
 
 
 def test_without_dask_one_sentence_says_what_to_install(

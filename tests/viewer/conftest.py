@@ -1,27 +1,35 @@
-"""A real browser, with the network off, and a report to open in it."""
+"""A page in a real browser with the network off, and a report to open in it."""
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+WIDTHS = (1280, 390)
+"""Of a desk and of a hand."""
 
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    """Chromium of the system; the test is skipped where there is none."""
-    sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
-    chromium = shutil.which("chromium")
-    if chromium is None:
-        pytest.skip("chromium is not installed")
-    with sync_api.sync_playwright() as playwright:
-        # the sandbox of Chromium does not start for root, as in most containers
-        opened = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
-        yield opened
-        opened.close()
+
+@contextmanager
+def shown(chromium: Any, path: Path, width: int) -> Iterator[Any]:
+    """A page opened from disk with the network off; nothing may be complained of or asked for."""
+    context = chromium.new_context(
+        viewport={"width": width, "height": 844}, offline=True, has_touch=True
+    )
+    page = context.new_page()
+    complaints: list[str] = []
+    asked: list[str] = []
+    page.on("console", lambda message: complaints.append(message.text))
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on("request", lambda request: asked.append(request.url))
+    page.goto(path.as_uri())
+    yield page
+    context.close()
+    assert complaints == []
+    assert asked == [path.as_uri()]
 
 
 @pytest.fixture(scope="module")

@@ -27,8 +27,8 @@ def findings(page: Any) -> list[str]:
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("width", [1280, 390])
-def test_axe_finds_nothing_serious(browser: Any, report: Path, scheme: str, width: int) -> None:
-    context = browser.new_context(
+def test_axe_finds_nothing_serious(chromium: Any, report: Path, scheme: str, width: int) -> None:
+    context = chromium.new_context(
         viewport={"width": width, "height": 844},
         color_scheme=scheme,
         reduced_motion="reduce",
@@ -44,8 +44,8 @@ def test_axe_finds_nothing_serious(browser: Any, report: Path, scheme: str, widt
     context.close()
 
 
-def test_a_page_that_cannot_be_read_is_noticed(browser: Any) -> None:
-    page = browser.new_page()
+def test_a_page_that_cannot_be_read_is_noticed(chromium: Any) -> None:
+    page = chromium.new_page()
     page.set_content("<p style='color:#bbb'>pale words</p><img src='data:,'><input>")
     found = " ".join(findings(page))
     for rule in ("html-has-lang", "image-alt", "label", "color-contrast"):

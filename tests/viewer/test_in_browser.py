@@ -8,26 +8,14 @@ from typing import Any
 
 import pytest
 
-WIDTHS = (1280, 390)
+from .conftest import WIDTHS, shown
 
 
 @pytest.fixture(params=WIDTHS)
-def page(browser: Any, report: Path, request: pytest.FixtureRequest) -> Iterator[Any]:
-    """The report at both widths; fails if anything was complained of or asked for."""
-    context = browser.new_context(
-        viewport={"width": request.param, "height": 844}, offline=True, has_touch=True
-    )
-    opened = context.new_page()
-    complaints: list[str] = []
-    asked: list[str] = []
-    opened.on("console", lambda message: complaints.append(message.text))
-    opened.on("pageerror", lambda error: complaints.append(str(error)))
-    opened.on("request", lambda request: asked.append(request.url))
-    opened.goto(report.as_uri())
-    yield opened
-    context.close()
-    assert complaints == []
-    assert asked == [report.as_uri()]
+def page(chromium: Any, report: Path, request: pytest.FixtureRequest) -> Iterator[Any]:
+    """The report at both widths."""
+    with shown(chromium, report, request.param) as opened:
+        yield opened
 
 
 def position(page: Any) -> float:

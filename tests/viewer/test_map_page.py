@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -15,9 +14,9 @@ import xarray as xr
 from ergowalk.comparison import human_of
 from ergowalk.viewer import gait_payload, map_html, packed
 
-HOSTILE = "</script><script>alert(1)</script><img src=x onerror=alert(2)> & \"quoted\" 'so'"
+from .conftest import WIDTHS, shown
 
-WIDTHS = (1280, 390)
+HOSTILE = "</script><script>alert(1)</script><img src=x onerror=alert(2)> & \"quoted\" 'so'"
 
 
 def landscape(reason: str = "killed after its limit of 3 s") -> dict[str, Any]:
@@ -81,42 +80,16 @@ def test_the_same_gait_is_packed_alike(gaits: dict[str, str], paper_gait: xr.Dat
 
 # --- in a browser -------------------------------------------------------------------------------
 
-CHROMIUM = shutil.which("chromium")
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
-    if CHROMIUM is None:
-        pytest.skip("chromium is not installed")
-    with sync_api.sync_playwright() as playwright:
-        # the sandbox of Chromium does not start for root, as in most containers
-        chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        yield chromium
-        chromium.close()
-
 
 @pytest.fixture(params=WIDTHS)
 def page(
-    browser: Any, gaits: dict[str, str], tmp_path: Path, request: pytest.FixtureRequest
+    chromium: Any, gaits: dict[str, str], tmp_path: Path, request: pytest.FixtureRequest
 ) -> Iterator[Any]:
-    """The page at both widths; fails if anything was complained of or asked for."""
+    """The page at both widths."""
     path = tmp_path / "map.html"
     path.write_text(map_html(landscape(HOSTILE), gaits, "A map"), "utf-8")
-    context = browser.new_context(
-        viewport={"width": request.param, "height": 900}, offline=True, has_touch=True
-    )
-    opened = context.new_page()
-    complaints: list[str] = []
-    asked: list[str] = []
-    opened.on("console", lambda message: complaints.append(message.text))
-    opened.on("pageerror", lambda error: complaints.append(str(error)))
-    opened.on("request", lambda request: asked.append(request.url))
-    opened.goto(path.as_uri())
-    yield opened
-    context.close()
-    assert complaints == []
-    assert asked == [path.as_uri()]
+    with shown(chromium, path, request.param) as opened:
+        yield opened
 
 
 def test_a_click_shows_the_gait_and_another_with_shift_lays_one_over_it(page: Any) -> None:

@@ -1,23 +1,17 @@
-"""The film of a gait, where this version can make one: the one place that knows how."""
+"""The film of a gait: the one place that knows how the app makes one."""
 
 from __future__ import annotations
 
 import json
 import os
-from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 
 from ergowalk.app.results import PAYLOAD
 
-MAKER = "ergowalk.film"
-"""The room that makes films."""
-
 
 def film_name() -> str:
-    """What a film is called in the folder of its gait and on its way out; "" if none is made."""
-    if find_spec(MAKER) is None:
-        return ""
+    """What a film is called in the folder of its gait and on its way out."""
     return "film.gif" if find_spec("av") is None else "film.mp4"
 
 
@@ -29,9 +23,11 @@ def make_film(folder: str | Path, name: str) -> None:
     InputError
         If it cannot be made.
     """
-    maker, place = import_module(MAKER), Path(folder)
+    from ergowalk.film import FilmOptions, film
+
+    place = Path(folder)
     payload = json.loads((place / PAYLOAD).read_text("utf-8"))
-    options = maker.FilmOptions(format=Path(name).suffix[1:])
+    options = FilmOptions(format=Path(name).suffix[1:])
     draft = place / f"part-{name}"
-    draft.write_bytes(maker.film([payload], options))
+    draft.write_bytes(film([payload], options))
     os.replace(draft, place / name)

@@ -24,13 +24,7 @@ def form() -> dict[str, Any]:
         ],
         "preset": DEFAULT_PRESET,
         "sources": list(BUILT_IN),
-        "size": knows_size(),
     }
-
-
-def knows_size() -> bool:
-    """Whether a body can be scaled to a height and a mass."""
-    return hasattr(Body, "from_height_mass")
 
 
 def values_of(problem: GaitProblem) -> dict[str, Any]:
@@ -111,13 +105,10 @@ def _without_files(problem: GaitProblem) -> GaitProblem:
 
 def _scaled(size: Any) -> Body:
     """The body of a person of a height and a mass."""
-    scale = getattr(Body, "from_height_mass", None)
-    if scale is None or not isinstance(size, dict):
+    if not isinstance(size, dict):
         raise ProblemError("cannot be used", "leave it out", field="size")
-    numbers = {name: size.get(name) for name in ("height_m", "mass_kg")}
+    numbers: dict[str, Any] = {name: size.get(name) for name in ("height_m", "mass_kg")}
     for name, value in numbers.items():
         if not isinstance(value, int | float) or isinstance(value, bool):
             raise ProblemError("should be a valid number", "give one", field=name, value=value)
-    chosen = {"sex": size["sex"]} if "sex" in size else {}
-    body: Body = scale(**numbers, **chosen)
-    return body
+    return Body.from_height_mass(**numbers, sex=size.get("sex"))

@@ -19,6 +19,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, TextIO
 
 from ergowalk.errors import InputError
+from ergowalk.values import as_json
 
 if TYPE_CHECKING:
     from ergowalk.solution import Progress
@@ -74,7 +75,7 @@ def work(tasks: Mapping[str, Task]) -> None:
     with _own_output() as output:
 
         def tell(message: dict[str, Any]) -> None:
-            output.write(json.dumps(_plain(message), allow_nan=False) + "\n")
+            output.write(json.dumps(as_json(message), allow_nan=False) + "\n")
             output.flush()
 
         order = json.loads(sys.stdin.buffer.readline())
@@ -133,15 +134,6 @@ def _end_with_parent() -> None:
     if hasattr(os, "killpg") and os.getpgid(0) == os.getpid():
         os.killpg(0, signal.SIGKILL)
     os._exit(1)
-
-
-def _plain(value: Any) -> Any:
-    """The value with None for numbers that JSON lacks."""
-    if isinstance(value, dict):
-        return {key: _plain(v) for key, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(v) for v in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 if __name__ == "__main__":

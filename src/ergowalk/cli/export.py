@@ -7,8 +7,8 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ergowalk.cli.arguments.common import UsageError
 from ergowalk.cli.output import result_folder, write_text
-from ergowalk.cli.parser import UsageError
 from ergowalk.cli.streams import emit, emit_json
 from ergowalk.errors import InputError, OutputError
 from ergowalk.solution import Solution

@@ -9,8 +9,8 @@ from argparse import Namespace
 from typing import Any
 
 from ergowalk.anthropometry import Person
+from ergowalk.cli.arguments.common import UsageError
 from ergowalk.cli.output import write_text
-from ergowalk.cli.parser import UsageError
 from ergowalk.cli.streams import emit, emit_json
 from ergowalk.errors import InputError, OutputError
 from ergowalk.problem import DEFAULT_PRESET, PRESETS, preset

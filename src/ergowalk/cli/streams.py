@@ -8,7 +8,6 @@ import os
 import shutil
 import sys
 import time
-from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self, TextIO
 
 from ergowalk.errors import OutputError
@@ -36,7 +35,9 @@ def emit(text: str) -> None:
 
 def emit_json(value: dict[str, Any]) -> None:
     """Print an answer as one JSON object; what is not a number becomes null."""
-    emit(json.dumps(_plain(value), indent=2, allow_nan=False))
+    from ergowalk.values import as_json  # with pydantic, which help needs not
+
+    emit(json.dumps(as_json(value), indent=2, allow_nan=False))
 
 
 def note(line: str) -> None:
@@ -91,12 +92,7 @@ class ProgressLine:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._finish()
 
     def _finish(self) -> None:
@@ -168,11 +164,3 @@ def _abandon(stream: TextIO) -> None:
     """Let what is still buffered go nowhere; the interpreter flushes it again at exit."""
     with open(os.devnull, "w") as nowhere:
         os.dup2(nowhere.fileno(), stream.fileno())
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _plain(v) for key, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(v) for v in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value

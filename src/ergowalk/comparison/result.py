@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ergowalk.comparison.signals import SD_FLOOR
 from ergowalk.corridors import BUILT_IN, SIGNALS
+from ergowalk.values import as_json
 
 Array = NDArray[np.float64]
 
@@ -101,8 +102,8 @@ class Comparison:
         """The comparison as plain values that ``json.dumps`` takes; None stands for NaN."""
         signals = {}
         for signal in self.signals:
-            values = {k: _finite(v) for k, v in asdict(signal).items() if k != "name"}
-            signals[signal.name] = values
+            values = {k: v for k, v in asdict(signal).items() if k != "name"}
+            signals[signal.name] = as_json(values)
         return {
             "source": self.source,
             "leg": self.leg,
@@ -111,12 +112,6 @@ class Comparison:
             "missing": list(self.missing),
             **({} if self.other is None else {"other_leg": self.other.as_dict()}),
         }
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {k: _finite(v) for k, v in value.items()}
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _row(signal: SignalComparison) -> tuple[str, ...]:

@@ -41,17 +41,7 @@ def markers(dataset: xr.Dataset, rate: float = RATE, strides: int = STRIDES) -> 
 def trc(dataset: xr.Dataset, rate: float = RATE, strides: int = STRIDES) -> str:
     """Joint centres of a gait as a TRC file in mm: x forward, y up, z = 0.
 
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        A gait in the format of ``gait.nc``.
-    rate, strides
-        As for :class:`ergowalk.io.Samples`.
-
-    Raises
-    ------
-    GaitFileError, InputError
-        As :class:`ergowalk.io.Samples`.
+    Parameters and errors as for :class:`ergowalk.io.Samples`.
     """
     found = markers(dataset, rate, strides)
     frames, count = len(found["Hip"]), len(found)

@@ -45,7 +45,7 @@ def figures(dataset: xr.Dataset, human: HumanGait, sheet: Sheet = SCREEN) -> dic
 
 def names_on(sheet: Sheet) -> list[str]:
     """Names of the figures that are made for a kind of page."""
-    return [name for name in FIGURES if sheet.overview or name != OVERVIEW]
+    return [name for name in FIGURES if name != OVERVIEW or not sheet.captioned]
 
 
 OVERVIEW = "figure_00_overview"
@@ -111,7 +111,7 @@ def _page(build: Build, dataset: xr.Dataset, material: Material, sheet: Sheet) -
 def _cyclogram_page(dataset: xr.Dataset, material: Material, sheet: Sheet) -> Figure:
     figure, axes = _empty(sheet.cyclogram)
     draw_cyclogram(axes, dataset, sheet.sticks)
-    if sheet.titles:
+    if not sheet.captioned:
         _title(axes, f"Cyclogram of a double step, {_size(dataset)}")
     figure.legend(handles=cyclogram_keys(sheet.sticks), loc="lower center", ncols=3)
     return figure
@@ -126,7 +126,7 @@ def _curve_page(signal: ComparedSignal) -> Build:
     def build(dataset: xr.Dataset, material: Material, sheet: Sheet) -> Figure:
         figure, axes = _empty(sheet.curve)
         draw_curve(axes, material, signal, sheet.hand)
-        if sheet.titles:
+        if not sheet.captioned:
             _title(axes, f"{_name(signal)} of leg 1, {_size(dataset)}", pad=16)
         keys = curve_keys(material, signal, hand=sheet.hand)
         columns = min(len(keys), sheet.columns or len(keys))

@@ -47,10 +47,9 @@ class Sheet:
         How curves are drawn.
     sticks : float
         Widths of the cyclogram's lines and size of its words, as multiples of those on a screen.
-    titles : bool
-        Whether a page says what it shows; in a journal its caption does.
-    overview : bool
-        Whether there is a page with all figures.
+    captioned : bool
+        Whether a caption says what a page shows, as in a journal. Otherwise the page itself does,
+        and there is one with all figures.
     columns : int or None
         Most entries of a legend beside each other.
     """
@@ -61,8 +60,7 @@ class Sheet:
     cyclogram: Place
     hand: Hand = Hand()
     sticks: float = 1.0
-    titles: bool = True
-    overview: bool = True
+    captioned: bool = False
     columns: int | None = None
 
 
@@ -80,8 +78,7 @@ SINGLE = Sheet(
     cyclogram=Place(88 * MM, 76 * MM, (0.135, 0.20, 0.85, 0.75)),
     hand=Hand(optimum=1.3, mean=0.9, corridor=0.7, phases=6.5, label="stacked"),
     sticks=0.8,
-    titles=False,
-    overview=False,
+    captioned=True,
     columns=2,
 )
 
@@ -92,8 +89,7 @@ DOUBLE = Sheet(
     cyclogram=Place(180 * MM, 132 * MM, (0.065, 0.125, 0.92, 0.855)),
     hand=Hand(optimum=1.5, mean=1.0, corridor=0.8, phases=7.0, label="stacked"),
     sticks=0.9,
-    titles=False,
-    overview=False,
+    captioned=True,
 )
 
 JOURNAL = {"single": SINGLE, "double": DOUBLE}

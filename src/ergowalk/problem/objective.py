@@ -15,6 +15,10 @@ from ergowalk.values import NonNegativeFloat, PositiveFloat, Value, invalid
 Share = Annotated[float, Field(ge=0, lt=1, strict=True)]
 
 
+def _weight(of: str, default: float = 0.0) -> Any:
+    return Field(default=default, description=f"weight of {of}")
+
+
 class Objective(Value):
     """A weighted sum of costs per metre; the default is (10) alone.
 
@@ -33,16 +37,10 @@ class Objective(Value):
 
     _error = ProblemError
 
-    absolute_work: NonNegativeFloat = Field(
-        default=1.0, description="weight of E (10), positive plus negative work"
-    )
-    positive_work: NonNegativeFloat = Field(
-        default=0.0, description="weight of the positive work alone"
-    )
-    muscle_work: NonNegativeFloat = Field(
-        default=0.0,
-        description="weight of the work of muscles, positive and negative work each divided by "
-        "its efficiency",
+    absolute_work: NonNegativeFloat = _weight("E (10), positive plus negative work", default=1.0)
+    positive_work: NonNegativeFloat = _weight("the positive work alone")
+    muscle_work: NonNegativeFloat = _weight(
+        "the work of muscles, positive and negative work each divided by its efficiency"
     )
     positive_efficiency: PositiveFloat = Field(
         default=0.25, description="efficiency of positive muscle work"
@@ -50,21 +48,15 @@ class Objective(Value):
     negative_efficiency: PositiveFloat = Field(
         default=1.2, description="efficiency of negative muscle work"
     )
-    regenerative_work: NonNegativeFloat = Field(
-        default=0.0,
-        description="weight of the positive work less a share of the negative work, which is won "
-        "back",
+    regenerative_work: NonNegativeFloat = _weight(
+        "the positive work less a share of the negative work, which is won back"
     )
     regenerated_share: Share = Field(
         default=0.5, description="share of the negative work that is won back, from 0 to below 1"
     )
-    moment_squared_s_per_m2: NonNegativeFloat = Field(
-        default=0.0, description="weight of the squared moments, s/m2"
-    )
-    moment_rate_squared_s3_per_m2: NonNegativeFloat = Field(
-        default=0.0,
-        description="weight of the squared moment rates, s3/m2; a smooth alternative to the bound "
-        "on the rate in [limits]",
+    moment_squared_s_per_m2: NonNegativeFloat = _weight("the squared moments, s/m2")
+    moment_rate_squared_s3_per_m2: NonNegativeFloat = _weight(
+        "the squared moment rates, s3/m2; a smooth alternative to the bound on the rate in [limits]"
     )
 
     @property

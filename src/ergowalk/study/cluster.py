@@ -5,12 +5,13 @@ from __future__ import annotations
 import logging
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 from ergowalk import __version__
 from ergowalk.errors import OutputError, SweepError
+from ergowalk.study.event_loop import event_loop
 from ergowalk.study.worker import THREADS, greet
 
 CONNECT_S = 20.0
@@ -27,14 +28,20 @@ def cluster_client(workers: int | None, scheduler: str | None, most: int) -> Ite
     Raises
     ------
     SweepError
-        If Dask is not installed, or there is no scheduler.
+        If Dask is not installed, there is no scheduler, or no cluster can be started.
     """
     distributed = needed()
-    if scheduler is not None:
-        with _connected(distributed, scheduler) as client:
-            yield client
-        return
-    count = min(most, workers or _processors())
+    with event_loop() as loop:
+        if scheduler is not None:
+            with _connected(distributed, scheduler, loop) as client:
+                yield client
+        else:
+            with _started(distributed, min(most, workers or _processors()), loop) as client:
+                yield client
+
+
+@contextmanager
+def _started(distributed: Any, count: int, loop: Any) -> Iterator[Any]:
     import dask
 
     quiet = {
@@ -43,33 +50,41 @@ def cluster_client(workers: int | None, scheduler: str | None, most: int) -> Ite
         "distributed.worker.memory.terminate": False,
         "distributed.worker.multiprocessing-method": "spawn",
     }
-    with (
-        dask.config.set(quiet),
-        distributed.LocalCluster(
-            n_workers=count,
-            threads_per_worker=1,
-            memory_limit=0,
-            dashboard_address="127.0.0.1:0",
-            silence_logs=logging.CRITICAL,
-            env=dict.fromkeys(THREADS, "1"),
-        ) as cluster,
-        distributed.Client(cluster) as client,
-    ):
+    with dask.config.set(quiet), ExitStack() as stack:
+        try:
+            cluster = distributed.LocalCluster(
+                n_workers=count,
+                threads_per_worker=1,
+                memory_limit=0,
+                dashboard_address="127.0.0.1:0",
+                silence_logs=logging.CRITICAL,
+                env=dict.fromkeys(THREADS, "1"),
+                loop=loop,
+            )
+            stack.enter_context(cluster)
+            client = stack.enter_context(distributed.Client(cluster, loop=loop))
+        except Exception as error:
+            raise SweepError(
+                f"cannot be started ({_words(error)})",
+                "try again with fewer, or when the machine has less to do",
+                field="workers",
+                value=count,
+            ) from None
         yield client
 
 
 @contextmanager
-def _connected(distributed: Any, scheduler: str) -> Iterator[Any]:
+def _connected(distributed: Any, scheduler: str, loop: Any) -> Iterator[Any]:
     logger = logging.getLogger("distributed")
     level = logger.level
     logger.setLevel(logging.CRITICAL)  # what goes wrong is told in one line
-    client = None
+    # held before it is made: one that found no scheduler must be closed too, or does it at exit
+    client = distributed.Client.__new__(distributed.Client)
     try:
-        client = distributed.Client(scheduler, timeout=CONNECT_S, set_as_default=False)
+        client.__init__(scheduler, timeout=CONNECT_S, set_as_default=False, loop=loop)
     except (OSError, ValueError, TypeError, ImportError) as error:
-        words = " ".join(str(error).split())[:200] or type(error).__name__
         raise SweepError(
-            f"there is no scheduler ({words})",
+            f"there is no scheduler ({_words(error)})",
             "give the address that 'dask scheduler' prints, as tcp://host:8786",
             field="scheduler",
             value=scheduler,
@@ -77,9 +92,8 @@ def _connected(distributed: Any, scheduler: str) -> Iterator[Any]:
     else:
         yield client
     finally:
-        if client is not None:
-            with suppress(Exception):  # a cluster that was lost cannot be left
-                client.close(timeout=2)
+        with suppress(Exception):  # a cluster that was lost cannot be left
+            client.close(timeout=2)
         logger.setLevel(level)
 
 
@@ -146,6 +160,10 @@ def needed() -> Any:
             f"a sweep needs {error.name}", "pip install 'ergowalk[sweep]'", field="sweep"
         ) from None
     return distributed
+
+
+def _words(error: Exception) -> str:
+    return " ".join(str(error).split())[:200] or type(error).__name__
 
 
 def _processors() -> int:

@@ -9,6 +9,7 @@ from ergowalk.comparison import compare, human_of
 from ergowalk.errors import InputError
 from ergowalk.quantities import JOINTS
 from ergowalk.solution import Solution
+from ergowalk.values import as_json
 
 INSTANTS = ("heel_end", "heel_off", "toe_tip_start", "toe_off")
 
@@ -44,7 +45,8 @@ def measured(solution: Solution) -> dict[str, Any]:
         peak = abs(data[name]).max(("time", "leg")) / mass
         found |= {f"peak_{kind}_{joint}": float(peak.sel(joint=joint)) for joint in JOINTS}
     found |= _human(solution)
-    return {name: _finite(value) for name, value in found.items()}
+    plain: dict[str, Any] = as_json(found)
+    return plain
 
 
 def _error(solution: Solution) -> float | None:
@@ -65,7 +67,3 @@ def _human(solution: Solution) -> dict[str, float]:
         mean = math.fsum(d * d for d in found.values()) / len(found)
         found["human_distance"] = math.sqrt(mean)
     return found
-
-
-def _finite(value: Any) -> Any:
-    return None if isinstance(value, float) and not math.isfinite(value) else value

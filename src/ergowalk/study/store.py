@@ -194,15 +194,8 @@ class Store:
             names = dict.fromkeys(name for row in rows for name in row) or {"key": None}
             table = pa.table({name: [row.get(name) for row in rows] for name in names})
             path = self.folder / INDEX
-            draft = _draft(path)
-            try:
+            with _replacing(path) as draft:
                 parquet.write_table(table, draft)
-                os.replace(draft, path)
-            except OSError as error:
-                raise _unwritable(path, error) from None
-            finally:
-                with contextlib.suppress(OSError):
-                    draft.unlink()
         return path
 
     @contextlib.contextmanager
@@ -238,13 +231,9 @@ class Store:
             return
         target = self.folder / "tables" / f"{case.table[:16]}.csv"
         if not target.exists():
-            try:
+            with _replacing(target) as draft:
                 target.parent.mkdir(exist_ok=True)
-                draft = _draft(target)
                 shutil.copyfile(table_of(case.problem), draft)
-                os.replace(draft, target)
-            except OSError as error:
-                raise _unwritable(target, error) from None
 
     def _clear_drafts(self) -> None:
         """Remove what killed processes have left half written."""
@@ -263,12 +252,18 @@ def write_whole(path: Path, content: bytes) -> None:
     OutputError
         If that is not possible; an old file is then still whole.
     """
-    draft = _draft(path)
+    with _replacing(path) as draft, open(draft, "wb") as file:
+        file.write(content)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+@contextlib.contextmanager
+def _replacing(path: Path) -> Iterator[Path]:
+    """A file beside its target, which takes its place once it is written; errors as above."""
+    draft = path.with_name(f".{path.name}.{secrets.token_hex(6)}.part")
     try:
-        with open(draft, "wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
+        yield draft
         os.replace(draft, path)
     except OSError as error:
         raise _unwritable(path, error) from None
@@ -297,10 +292,6 @@ def _rows(records: Sequence[Record]) -> list[Record]:
         | {f: json.dumps(v) if f in words else float(v) for f, v in case.items()}
         for record, case in zip(records, values, strict=True)
     ]
-
-
-def _draft(path: Path) -> Path:
-    return path.with_name(f".{path.name}.{secrets.token_hex(6)}.part")
 
 
 def _unwritable(path: Path, error: OSError) -> OutputError:

@@ -14,13 +14,11 @@ from ergowalk.corridors import BUILT_IN, SIGNALS
 from ergowalk.errors import GaitFileError, InputError
 from ergowalk.quantities import JOINTS
 from ergowalk.solution import Solution
+from ergowalk.viewer.document import document
 from ergowalk.viewer.figures import headline, work_by_joint
 from ergowalk.viewer.human import human_payload
 from ergowalk.viewer.looks import asset
 from ergowalk.viewer.payload import gait_payload
-
-# Nothing may be fetched, whatever a gait file says.
-_POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
 
 
 def report_html(
@@ -40,15 +38,13 @@ def report_html(
     """
     reports = _reports(solutions, files)
     title = f"Gait report: {', '.join(report.label for report in reports)}"
-    return _PAGE.format(
-        policy=escape(_POLICY),
-        title=escape(title),
-        style=asset("viewer.css") + asset("page.css"),
+    main = _MAIN.format(
         heading=escape("Gait report" if len(reports) > 1 else title),
         warnings="".join(report.warning() for report in reports),
         viewer=viewer_html(_payloads(reports, human)),
         reports="\n".join(report.html(i) for i, report in enumerate(reports, 1)),
     )
+    return document(title, ("viewer.css", "page.css"), main)
 
 
 def payloads(
@@ -281,27 +277,10 @@ def _scrolling(content: str, name: str) -> str:
     return f'<div class="scrolls" tabindex="0" role="group" aria-label="{name}">{content}</div>'
 
 
-_PAGE = """\
-<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="{policy}">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta name="color-scheme" content="light dark">
-<title>{title}</title>
-<style>
-{style}</style>
-</head>
-<body>
-<main>
+_MAIN = """\
 <h1>{heading}</h1>
 {warnings}{viewer}
-{reports}
-</main>
-</body>
-</html>
-"""
+{reports}"""
 
 _VIEWER = """\
 {viewer}

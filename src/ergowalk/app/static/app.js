@@ -36,7 +36,6 @@ class ProblemForm {
     this.fields = [...root.querySelectorAll("[data-path]")];
     for (const preset of known.presets) find("preset").append(new Option(preset.name));
     for (const source of known.sources) find("source").append(new Option(source));
-    find("size").hidden = !known.size;
     find("preset").addEventListener("change", () => this.usePreset(find("preset").value));
     find("file").addEventListener("change", () => this.useFile(find("file").files[0]));
     find("speed").addEventListener("input", () => this.followSpeed());
@@ -133,7 +132,7 @@ class ProblemForm {
     }
     const size = { height_m: spoken(find("height").value), mass_kg: spoken(find("mass").value) };
     if (find("sex").value) size.sex = find("sex").value;
-    return find("scaled").checked && this.known.size ? { problem, size } : { problem };
+    return find("scaled").checked ? { problem, size } : { problem };
   }
 
   /* Show why the server refused, below the field that it names; null clears. */

@@ -15,8 +15,7 @@ from ergowalk.problem.legs import Stride
 from ergowalk.solution import Solution
 from ergowalk.solving.answer import dense_gait
 from ergowalk.solving.memory import recall
-from ergowalk.solving.searching import twice
-from ergowalk.solving.stages import StageResult
+from ergowalk.solving.stages import StageResult, Start
 from ergowalk.transcription.collocation import Collocation
 from ergowalk.transcription.curves import Guess, Samples, Trajectory
 from ergowalk.transcription.halves import Orders, halves_of
@@ -61,7 +60,7 @@ def both_halves(problem: GaitProblem, mirrored: Mirrored) -> Collocation:
 
 
 def packed(collocation: Collocation, problem: GaitProblem, mirrored: Mirrored) -> Array:
-    start = twice(mirrored.result.trajectory, problem)
+    start = Start.twice(mirrored.result.trajectory, problem)
     return collocation.pack(start.guess, start.times, start.shared)
 
 
@@ -133,7 +132,7 @@ def test_exchanging_the_legs_exchanges_the_halves(mirrored: Mirrored) -> None:
     here = dict(times)
     late = {name: 1.04 * t for name, t in times.items()}
     count = len(mirrored.result.trajectory.phases)
-    curves = moved(twice(mirrored.result.trajectory, problem).guess, 0.01)
+    curves = moved(Start.twice(mirrored.result.trajectory, problem).guess, 0.01)
 
     def found(given: GaitProblem, first: int, step_1: float) -> tuple[float, dict[str, float]]:
         collocation = both_halves(given, mirrored)

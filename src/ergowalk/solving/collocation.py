@@ -12,7 +12,7 @@ from ergowalk.solving.answer import describe, judged, rhythms_of, step_lengths
 from ergowalk.solving.candidate import Candidate, Gait
 from ergowalk.solving.check import MeshCheck
 from ergowalk.solving.impulses import show_impulses
-from ergowalk.solving.memory import recall_for, remember
+from ergowalk.solving.memory import recall_for, recall_twice, remember
 from ergowalk.solving.refinement import refine, taken_over
 from ergowalk.solving.searching import Search, best_of, from_mirrored, in_all_orders
 from ergowalk.solving.stages import COARSE, POINTS, Effort, OrderSearch, Start
@@ -21,6 +21,9 @@ from ergowalk.transcription.halves import Orders
 from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.perturbation import Perturbation
 from ergowalk.transcription.walker import Smoothing
+
+APART = 1e-5
+"""Barrier from which legs that were equal are set apart."""
 
 FAINT = Smoothing(moment_rate=1e-7, metatarsal_rate=1e-7)
 """Smoothing of a problem without moment-rate bound: too little to hide that it is impulsive."""
@@ -89,6 +92,11 @@ def _begin(search: Search, problem: GaitProblem, start: Solution) -> Candidate |
         result = here.continued(before, times, shared)
         if result.minimum.converged:
             return Candidate(here, result, continued=True)
+    before = recall_twice(start, here, POINTS) if problem.full_stride else None
+    if before is not None:
+        result = here.continued(before, times, shared, APART)
+        if result.minimum.converged:
+            return Candidate(here, result)
     result = here.started(Start(begun.guess(problem, here.halves), times, shared))
     return Candidate(here, result) if result.minimum.converged else None
 

@@ -6,6 +6,7 @@ With them a stored gait can be priced, or its neighbour found, without solving i
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from ergowalk.gait.rhythm import PhaseOrder
 from ergowalk.problem.objective import energy_per_metre
 from ergowalk.solution import Solution
 from ergowalk.solvers.ipopt import Minimum
-from ergowalk.solving.stages import Effort, OrderSearch, StageResult
+from ergowalk.solving.stages import Effort, OrderSearch, StageResult, Start
 from ergowalk.transcription.collocation import Collocation
 from ergowalk.transcription.walker import Smoothing
 
@@ -92,6 +93,33 @@ def recall_for(solution: Solution, search: OrderSearch, points: int) -> StageRes
     stage = _stage(solution, mesh, search)
     same = stage is not None and stage.collocation.signature == mesh.get("signature")
     return stage if same else None
+
+
+def recall_twice(solution: Solution, search: OrderSearch, points: int) -> StageResult | None:
+    """The stage of a gait whose legs mirror each other, as one of a search for both halves.
+
+    Multipliers come along where a phase has the same rows; None if the gait keeps none, or has
+    another order or number of Gauss points.
+    """
+    mesh = _mesh(solution)
+    orders = search.orders
+    if mesh is None or mesh["points"] != points or solution.full_stride:
+        return None
+    if any(mesh["order"] != str(order) for order in orders):
+        return None
+    try:
+        _, half = recall(solution)
+    except GaitFileError:
+        return None
+    start = Start.twice(half.trajectory, search.problem)
+    collocation = Collocation(search.phased, half.collocation.mesh * 2, points, search.store)
+    x = collocation.pack(start.guess, start.times, start.shared)
+    last = half.minimum
+    variables, rows = collocation.repeat_multipliers(
+        half.collocation, last.variable_multipliers, last.row_multipliers
+    )
+    minimum = replace(last, x=x, variable_multipliers=variables, row_multipliers=rows)
+    return StageResult(collocation, collocation.unpack(x), minimum, half.energy_at_nodes)
 
 
 def _mesh(solution: Solution) -> dict[str, Any] | None:

@@ -13,11 +13,10 @@ from ergowalk.problem.constraints import SHORTEST_PHASE
 from ergowalk.solving.candidate import Candidate
 from ergowalk.solving.easing import eased, needs_easing, without_devices
 from ergowalk.solving.stages import OrderSearch, StageResult, Start
-from ergowalk.transcription.curves import Samples, Trajectory
-from ergowalk.transcription.halves import Orders, times_twice
+from ergowalk.transcription.curves import Samples
+from ergowalk.transcription.halves import Orders
 from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.perturbation import Perturbation
-from ergowalk.transcription.steps import STEP_1
 
 Array = NDArray[np.float64]
 
@@ -83,7 +82,7 @@ def from_mirrored(
     fitted_later = needs_easing(problem)
     first = _with_common_devices(problem) if fitted_later else problem
     begun = search(first, orders)
-    result = begun.stage("legs apart", mesh, twice(best.result.trajectory, problem))
+    result = begun.stage("legs apart", mesh, Start.twice(best.result.trajectory, problem))
     if not result.minimum.converged and not problem.body.legs_equal:
         begun, result = _step_by_step(search, first, best, orders)
     for half in (0, 1):
@@ -144,7 +143,7 @@ def _step_by_step(
     search: Search, problem: GaitProblem, best: Candidate, orders: Orders
 ) -> tuple[OrderSearch, StageResult]:
     """Bodies set apart by one share after the other."""
-    start, before = twice(best.result.trajectory, problem), None
+    start, before = Start.twice(best.result.trajectory, problem), None
     mesh = best.result.collocation.mesh * 2
     for share in SHARES:
         here = search(problem.replace(body=problem.body.mirrored(share)), orders)
@@ -153,13 +152,3 @@ def _step_by_step(
             break
         start, before = Start.at(result.trajectory), result
     return here, result
-
-
-def twice(trajectory: Trajectory, problem: GaitProblem) -> Start:
-    """The gait of legs that mirror each other as the start of both halves of a stride."""
-    curves, count = trajectory.as_guess(), len(trajectory.phases)
-
-    def guess(i: int, fractions: Array) -> Samples:
-        return curves(i % count, fractions)
-
-    return Start(guess, times_twice(trajectory.times), {STEP_1: problem.step_length_m})

@@ -19,12 +19,13 @@ from ergowalk.transcription.guess import (
     starting_rhythm,
     starting_times,
 )
-from ergowalk.transcription.halves import Orders, halves_of, mesh_of
+from ergowalk.transcription.halves import Orders, halves_of, mesh_of, times_twice
 from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.layout import Mesh
 from ergowalk.transcription.perturbation import Perturbation
 from ergowalk.transcription.phases import PhasedProblem
 from ergowalk.transcription.residuals import Residuals, mesh_residuals
+from ergowalk.transcription.steps import STEP_1
 from ergowalk.transcription.walker import Smoothing
 from ergowalk.transcription.walking import kinematic_problem, walking_problem
 
@@ -99,6 +100,13 @@ class Start:
         """At the end of another stage, or at curves that were made of it."""
         return cls(guess or curves.as_guess(), curves.times, curves.shared)
 
+    @classmethod
+    def twice(cls, curves: Trajectory, problem: GaitProblem) -> Start:
+        """At a gait of legs that mirror each other, for both halves of a stride."""
+        half, count = curves.as_guess(), len(curves.phases)
+        times = times_twice(curves.times)
+        return cls(lambda i, s: half(i % count, s), times, {STEP_1: problem.step_length_m})
+
 
 class OrderSearch:
     """All stages for one phase order of one problem, or one order for each half of its stride."""
@@ -164,14 +172,18 @@ class OrderSearch:
         return self._run("from a gait", self.phased, mesh, start, _warm(1e-4, 1e-3))
 
     def continued(
-        self, before: StageResult, times: Mapping[str, float], shared: Mapping[str, float]
+        self,
+        before: StageResult,
+        times: Mapping[str, float],
+        shared: Mapping[str, float],
+        barrier: float = 1e-6,
     ) -> StageResult:
         """From the point and the multipliers of a neighbour's gait, on its mesh.
 
         ``before`` stands in the unknowns of this search.
         """
         start = Start(before.trajectory.as_guess(), times, shared)
-        solver = _warm(1e-6, 1e-6)
+        solver = _warm(1e-6, barrier)
         return self._solve("from a gait", before.collocation, start, solver, before)
 
     def free_rhythm(

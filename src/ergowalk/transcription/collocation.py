@@ -163,6 +163,33 @@ class Collocation:
         new_rows.append(rows[first:])
         return new_variables, np.concatenate(new_rows)
 
+    def repeat_multipliers(
+        self, part: Collocation, variables: Array, rows: Array
+    ) -> tuple[Array, Array]:
+        """Multipliers of a chain of phases that stands in this problem several times, on one mesh.
+
+        Zero for rows between phases, and for phases whose rows are not those of the part.
+        """
+        new_variables, new_rows = np.zeros(self.layout.size), []
+        blocks, first = [], 0
+        for mesh, pk in zip(part.mesh, part.kernels, strict=True):
+            size = len(pk.labels) * (len(mesh) - 1)
+            blocks.append(rows[first : first + size])
+            first += size
+        for i, (where, pk) in enumerate(zip(self.layout.phases, self.kernels, strict=True)):
+            k = i % len(part.mesh)
+            there, old = part.layout.phases[k], part.kernels[k]
+            size = len(pk.labels) * (len(self.mesh[i]) - 1)
+            if pk.labels != old.labels or len(self.mesh[i]) != len(part.mesh[k]):
+                new_rows.append(np.zeros(size))
+                continue
+            new_rows.append(blocks[k])
+            for name in ("algebraics", "plus", "minus"):
+                new_variables[getattr(where, name)] = variables[getattr(there, name)]
+        known = sum(map(len, new_rows))
+        new_rows.append(np.zeros(len(self.programme.labels) - known))
+        return new_variables, np.concatenate(new_rows)
+
     def unpack(self, x: Array) -> Trajectory:
         """The piecewise polynomial curves that the variables stand for."""
         physical = x * self.layout.scale

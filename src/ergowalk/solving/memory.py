@@ -19,6 +19,7 @@ from ergowalk.solution import Solution
 from ergowalk.solvers.ipopt import Minimum
 from ergowalk.solving.stages import Effort, OrderSearch, StageResult, Start
 from ergowalk.transcription.collocation import Collocation
+from ergowalk.transcription.phases import PhaseModel
 from ergowalk.transcription.walker import Smoothing
 
 POINT, AT_BOUNDS, AT_ROWS = "nlp_variable", "nlp_variable_multiplier", "nlp_row_multiplier"
@@ -111,6 +112,8 @@ def recall_twice(solution: Solution, search: OrderSearch, points: int) -> StageR
         _, half = recall(solution)
     except GaitFileError:
         return None
+    if not all(map(_has_unknowns_of, half.collocation.problem.phases * 2, search.phased.phases)):
+        return None
     start = Start.twice(half.trajectory, search.problem)
     collocation = Collocation(search.phased, half.collocation.mesh * 2, points, search.store)
     x = collocation.pack(start.guess, start.times, start.shared)
@@ -120,6 +123,13 @@ def recall_twice(solution: Solution, search: OrderSearch, points: int) -> StageR
     )
     minimum = replace(last, x=x, variable_multipliers=variables, row_multipliers=rows)
     return StageResult(collocation, collocation.unpack(x), minimum, half.energy_at_nodes)
+
+
+def _has_unknowns_of(phase: PhaseModel, other: PhaseModel) -> bool:
+    """Whether the curves of a phase tell all unknowns of another."""
+    kinds = ("coordinates", "controls", "algebraics")
+    here, there = ({x.name for k in kinds for x in getattr(p, k)} for p in (phase, other))
+    return here >= there
 
 
 def _mesh(solution: Solution) -> dict[str, Any] | None:

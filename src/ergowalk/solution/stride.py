@@ -71,7 +71,8 @@ def stride_dataset(
     second = _later(second, contact, ahead)
     values = {name: np.concatenate([first[name], second[name]]) for name in first}
     values |= _corridors(problem, values["time"], contact)
-    if not whole:
+    if not whole:  # to the last digit
+        values["time"] = np.minimum(values["time"], problem.stride_time_s)
         values["time"][-1] = problem.stride_time_s
     return _labelled(values)
 

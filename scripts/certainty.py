@@ -1,7 +1,8 @@
 """Tables of "How sure is this number?": ``python scripts/certainty.py [NAME ...]``.
 
 Meshes halved everywhere; a path of gaits against its prices; searches from
-seeded starts. Minutes each. The environment variable STARTS sets how many starts there are.
+seeded starts. Minutes each. The environment variable STARTS sets how many starts there are; with
+KEPT, a folder, each gait is left there as it is found, and not sought again.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import json
 import os
 import sys
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 
@@ -18,10 +20,12 @@ from blocks import table, write_studies
 from ergowalk.solving.answer import dense_energy, dense_gait
 from ergowalk.solving.memory import recall
 from ergowalk.solving.stages import OrderSearch, StageResult
+from ergowalk.solving.starts import catalogued, solve_start
 from ergowalk.transcription.mesh import finer
 
 HALVINGS = 2
 STARTS, SEED = int(os.environ.get("STARTS", "10")), 1
+KEPT = Path(os.environ["KEPT"]) if "KEPT" in os.environ else None
 
 
 @cache
@@ -91,8 +95,11 @@ def path() -> str:
 def starts() -> str:
     """Distinct optima from seeded starts of the default problem."""
     problem = ergowalk.preset("berbyuk2002")
-    found = ergowalk.solve(problem, starts=STARTS, seed=SEED)
-    catalogue = json.loads(str(found.dataset.attrs["starts"]))
+    if KEPT is None:
+        found = ergowalk.solve(problem, starts=STARTS, seed=SEED)
+        catalogue = json.loads(str(found.dataset.attrs["starts"]))
+    else:
+        catalogue = json.loads(catalogued(_kept_starts(problem, KEPT), SEED).as_json())
     best = catalogue["optima"][0]["energy_per_metre"]
     print(catalogue, file=sys.stderr, flush=True)
     rows = [
@@ -110,6 +117,18 @@ def starts() -> str:
         f"{catalogue['converged']} converge, {catalogue['accepted']} are accepted by the audit."
     )
     return f"{summary}\n\n" + table((*header, "distance from the first [deg r.m.s.]"), rows)
+
+
+def _kept_starts(problem: ergowalk.GaitProblem, folder: Path) -> list[ergowalk.Solution]:
+    """The gaits of all starts, one after the other; those that are there already are read."""
+    folder.mkdir(parents=True, exist_ok=True)
+    found = []
+    for i in range(STARTS):
+        path = folder / f"{i}.nc"
+        if not path.exists():
+            solve_start(problem, SEED, i, None, str(folder))
+        found.append(ergowalk.Solution.load(path))
+    return found
 
 
 STUDIES = {

@@ -171,6 +171,8 @@ def _numbers(table: Value, path: str) -> Iterator[tuple[str, float]]:
         value = getattr(table, name)
         if isinstance(value, Value):
             yield from _numbers(value, f"{path}.{name}")
+        elif isinstance(value, tuple) and all(isinstance(x, float) for x in value):
+            yield from ((f"{path}.{name}.{leg}", x) for leg, x in enumerate(value, start=1))
         elif isinstance(value, float | int) and not isinstance(value, bool) and value != 0:
             yield f"{path}.{name}", float(value)
 
@@ -224,8 +226,15 @@ def changed(problem: GaitProblem, name: str, value: float) -> GaitProblem:
 
 def _replaced(table: Value, path: list[str], value: float) -> Value:
     first, *rest = path
-    inner = _replaced(getattr(table, first), rest, value) if rest else value
-    replaced: Value = table.replace(**{first: inner})
+    before, inner = getattr(table, first), value
+    if isinstance(before, tuple):  # one leg of a pair
+        pair = [value if str(leg) == rest[0] else x for leg, x in enumerate(before, start=1)]
+        return _with(table, first, tuple(pair))
+    return _with(table, first, _replaced(before, rest, value) if rest else inner)
+
+
+def _with(table: Value, name: str, value: object) -> Value:
+    replaced: Value = table.replace(**{name: value})
     return replaced
 
 

@@ -107,7 +107,7 @@ def solve_from_starts(
         count = min(starts, workers or os.cpu_count() or 1)
         with ProcessPoolExecutor(count, context, _leave_interrupts_to_the_parent) as pool:
             jobs: dict[Future[str], int] = {
-                pool.submit(_solve_start, problem, seed, i, smoothing, folder): i
+                pool.submit(solve_start, problem, seed, i, smoothing, folder): i
                 for i in range(starts)
             }
             try:
@@ -135,10 +135,10 @@ def _leave_interrupts_to_the_parent() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-def _solve_start(
+def solve_start(
     problem: GaitProblem, seed: int, index: int, smoothing: Smoothing | None, folder: str
 ) -> str:
-    """Work of one process: the gait of one start, left in a file."""
+    """The gait of start ``index`` in ``folder``, as INDEX.nc; its path. Work of one process."""
     perturbation = Perturbation(seed, index) if index else None
     gait = solve_collocation(problem, smoothing, None, None, perturbation)
     return str(gait.save(Path(folder) / f"{index}.nc"))

@@ -135,6 +135,14 @@ def _check_objective(problem: GaitProblem, method: str) -> None:
             value=problem.devices.sentence(),
         )
 
+    if method != "collocation" and problem.full_stride:
+        raise ProblemError(
+            f"method {method!r} knows legs that mirror each other only",
+            "give both legs the same parameters, bounds and devices, or use method 'collocation'",
+            field="stride.legs",
+            value=problem.stride.legs,
+        )
+
 
 def _check_starts(method: str, start: Solution | None) -> None:
     if method != "collocation" or start is not None:

@@ -56,8 +56,15 @@ def _price(gait: Solution, name: str) -> float:
     return price_of(gait, name)
 
 
+def _objective(gait: Solution) -> float:
+    return gait.objective_per_metre
+
+
 ENERGY = Criterion("E [J/m]", _energy, _price)
 """Energy per metre; its derivatives come from the multipliers of the gait."""
+
+OBJECTIVE = Criterion("objective [J/m]", _objective, _price)
+"""What the problem minimises, whatever that is; its derivatives come from the multipliers too."""
 
 
 @dataclass(frozen=True)
@@ -143,7 +150,8 @@ def preferred(
     start : Solution, optional
         A gait to begin with, of any speed.
     criterion : Criterion, optional
-        What is minimised; by default :data:`ENERGY`. The gaits must minimise the same.
+        What is minimised; by default :data:`ENERGY`, or :data:`OBJECTIVE` if the problem minimises
+        something else. The gaits must minimise the same.
     solver : callable, optional
         Finds a gait of a problem from a start; :func:`ergowalk.solve` by default.
     progress : callable, optional
@@ -163,7 +171,9 @@ def preferred(
     """
     if not 0 < speed < math.inf:
         raise SweepError("must be positive", "give a speed in m/s", field="speed", value=speed)
-    search = _Search(problem, speed, criterion or ENERGY, solver or _solver(progress))
+    if criterion is None:
+        criterion = ENERGY if problem.objective.is_eq10 else OBJECTIVE
+    search = _Search(problem, speed, criterion, solver or _solver(progress))
     return search.run(start)
 
 

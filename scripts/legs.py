@@ -69,7 +69,7 @@ def solved(folder: Path) -> dict[str, ergowalk.Solution]:
 def _kept(path: Path, problem: GaitProblem, start: ergowalk.Solution | None) -> ergowalk.Solution:
     if path.exists():
         gait = ergowalk.Solution.load(path)
-        if gait.problem == problem:
+        if gait.problem.replace(folder=None) == problem:
             return gait
     gait = ergowalk.solve(problem, start=start)
     gait.save(path)

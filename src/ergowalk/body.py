@@ -47,7 +47,8 @@ class LegParameters:
     def foot_angle(self) -> float:
         """Angle phi_m = AMH of the foot triangle [rad], by the law of cosines."""
         c, l_h = self.ankle_to_metatarsal, self.heel_to_metatarsal
-        return math.acos((c**2 + l_h**2 - self.heel_to_ankle**2) / (2 * c * l_h))
+        cosine = (c**2 + l_h**2 - self.heel_to_ankle**2) / (2 * c * l_h)
+        return cosine.arccos() if hasattr(cosine, "arccos") else math.acos(cosine)
 
     @property
     def ankle_height(self) -> float:

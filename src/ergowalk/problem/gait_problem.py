@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import StrEnum
 from pathlib import Path
 from typing import Any, Literal, Self
@@ -13,6 +14,7 @@ from ergowalk.body import Body
 from ergowalk.corridors import ANGLES, Corridor, HumanGait, human_gait
 from ergowalk.errors import BodyError, CorridorError, ProblemError
 from ergowalk.gait.rhythm import PRINTED_RHYTHM, PhaseOrder, Rhythm
+from ergowalk.problem.design import Design, check_design, with_values
 from ergowalk.problem.devices import Device, Devices
 from ergowalk.problem.limits import Limits, Off
 from ergowalk.problem.objective import Objective
@@ -205,6 +207,12 @@ class GaitProblem(Value):
         description="passive devices, a table [devices.hip], [devices.knee], [devices.ankle] or "
         "[devices.metatarsal] for each joint that has one",
     )
+    design: Design = Field(
+        default=Design(),
+        description='numbers of body and devices that are found with the gait, as "PATH" = [lowest, '
+        "highest]; their values above are where the search starts",
+        json_schema_extra={"default": {}},
+    )
     folder: Path | None = Field(
         default=None, exclude=True, description="where relative file names start"
     )
@@ -221,11 +229,17 @@ class GaitProblem(Value):
             parts.append(f"minimised: {self.objective.sentence()}")
         if self.devices.sentence():
             parts.append(f"devices: {self.devices.sentence()}")
+        if self.design:
+            parts.append(f"free: {self.design.sentence()}")
         return "; ".join(parts)
 
     def devices_of(self, leg: int) -> tuple[tuple[str, Device], ...]:
         """(joint, device) of every device of a leg (0 is leg 1 of the paper)."""
         return tuple(self.devices.items())
+
+    def with_design(self, values: Mapping[str, float]) -> GaitProblem:
+        """The problem with numbers of body and devices, by path, replaced; the bounds are kept."""
+        return with_values(self, values)
 
     def human(self) -> HumanGait:
         """The human data that the corridors come from."""
@@ -303,4 +317,9 @@ class GaitProblem(Value):
                 f"out of reach: these legs span at most {longest:.2f} m between heel contacts",
                 "shorten the step or lengthen the legs",
             )
+        return self
+
+    @model_validator(mode="after")
+    def _design_can_be(self) -> Self:
+        check_design(self)
         return self

@@ -57,7 +57,7 @@ def dense(
     energy = dense_energy(dataset, search.problem.step_length_m)
     history.append(record(result, energy, **flags))
     if not search.problem.objective.is_eq10:
-        history[-1]["objective_per_metre"] = minimised(dataset, search.problem)
+        history[-1]["objective_per_metre"] = minimised(dataset, search.solved(result))
     return dataset, energy
 
 

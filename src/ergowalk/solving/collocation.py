@@ -12,8 +12,10 @@ from ergowalk.solving.answer import describe, judged, rhythm_of
 from ergowalk.solving.candidate import Candidate, Gait
 from ergowalk.solving.check import MeshCheck
 from ergowalk.solving.easing import eased, needs_easing
+from ergowalk.solving.design_prices import as_json, found_design
 from ergowalk.solving.impulses import show_impulses
 from ergowalk.solving.memory import recall_for, remember
+from ergowalk.solving.multipliers import with_fixed_multipliers
 from ergowalk.solving.refinement import refine, taken_over
 from ergowalk.solving.stages import COARSE, POINTS, Effort, OrderSearch, Start
 from ergowalk.solving.start import StartingGait
@@ -66,7 +68,8 @@ def _searched(search: OrderSearch, perturbation: Perturbation | None) -> Candida
     if needs_easing(search.problem):
         return Candidate(search, eased(search, perturbation))
     held = search.fixed_rhythm(search.fit(), perturbation)
-    if not held.minimum.converged or search.problem.rhythm.fixed:
+    all_held = search.problem.rhythm.fixed and not search.problem.design
+    if not held.minimum.converged or all_held:
         return Candidate(search, held)
     return Candidate(search, search.free_rhythm(held, perturbation))
 
@@ -81,12 +84,14 @@ def _begin(searches: list[OrderSearch], start: Solution) -> Candidate | None:
     for search in searches:
         times = begun.times(search.problem)
         if search.order is begun.order and times is not None:
+            shared = begun.design(search.problem)
+            start_at = Start(begun.guess(search.problem), times, shared)
             before = recall_for(start, search, POINTS)
             if before is not None:
-                result = search.continued(before, times)
+                result = search.continued(before, start_at)
                 if result.minimum.converged:
                     return Candidate(search, result, continued=True)
-            result = search.started(Start(begun.guess(search.problem), times))
+            result = search.started(start_at)
             return Candidate(search, result) if result.minimum.converged else None
     return None
 
@@ -103,7 +108,7 @@ def _finished(
 ) -> Solution:
     """Attributes, audit, and the verdict."""
     search = gait.candidate.search
-    problem = search.problem
+    problem = search.solved(gait.candidate.result)
     tried = {
         str(c.search.order): {
             "energy_at_nodes": c.result.energy_at_nodes,
@@ -121,6 +126,9 @@ def _finished(
         # apart from the rest of the history: the same solve twice differs in its clocks alone
         "mesh_times": json.dumps([record.pop("solve_time", 0.0) for record in gait.history]),
     }
+    if problem.design:
+        minimum = with_fixed_multipliers(gait.candidate.result)
+        extra["design"] = as_json(found_design(search, gait.candidate.result, minimum))
     dataset = describe(
         gait.dataset,
         problem,

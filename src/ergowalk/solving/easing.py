@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ergowalk.gait.rhythm import half_stride_phases
-from ergowalk.problem import Devices, GaitProblem
+from ergowalk.problem import Design, Devices, GaitProblem
 from ergowalk.problem.devices import EasedDevice
 from ergowalk.solvers.ipopt import Ipopt
 from ergowalk.solving.stages import SEARCH_BARRIER, OrderSearch, StageResult, Start
@@ -35,7 +35,7 @@ def needs_easing(problem: GaitProblem) -> bool:
 
 def eased(search: OrderSearch, perturbation: Perturbation | None = None) -> StageResult:
     """The gait of a phase order on few elements, its devices fitted step by step."""
-    problem = search.problem
+    problem = search.problem.replace(design=Design())
     bare = _search(search, problem.replace(devices=Devices()))
     result = bare.fixed_rhythm(bare.fit(), perturbation)
     for i, price in enumerate(PRICES):
@@ -54,7 +54,9 @@ def eased(search: OrderSearch, perturbation: Perturbation | None = None) -> Stag
         if not result.minimum.converged:
             break
     start = Start(fitted(search, stage, result), result.trajectory.times)
-    return search.stage("devices alone", result.collocation.mesh, start)
+    mesh, design = result.collocation.mesh, search.problem.design
+    alone = search.stage("devices alone", mesh, start, held=bool(design))
+    return search.free_rhythm(alone) if design and alone.minimum.converged else alone
 
 
 def fitted(search: OrderSearch, before: OrderSearch, result: StageResult) -> Guess:

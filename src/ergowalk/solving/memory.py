@@ -123,6 +123,6 @@ def _stage(solution: Solution, mesh: dict[str, Any], search: OrderSearch) -> Sta
         solve_time=0.0,
     )
     problem = solution.problem
-    work = minimum.objective * problem.body.total_mass
+    work = minimum.objective * search.walker.reference_mass
     energy = energy_per_metre(work, problem.step_length_m)
     return StageResult(collocation, collocation.unpack(x), minimum, energy)

@@ -16,6 +16,7 @@ from ergowalk.gait.rhythm import (
     half_stride_phases,
 )
 from ergowalk.problem import JOINTS, GaitProblem
+from ergowalk.problem.design import value_at
 from ergowalk.quantities import SEGMENTS
 from ergowalk.solution import Solution
 from ergowalk.transcription.curves import Guess, Samples
@@ -64,6 +65,11 @@ class StartingGait:
         if any(fractions[p.start] >= fractions[p.end] for p in phases):
             return None
         return {name: f * problem.stride_time_s for name, f in fractions.items()}
+
+    def design(self, problem: GaitProblem) -> dict[str, float]:
+        """What this gait has of a problem's free numbers, as far as their bounds allow."""
+        found = {f.path: (f, value_at(self.gait.problem, f.path)) for f in problem.design.free}
+        return {p: f.inside(v) for p, (f, v) in found.items() if isinstance(v, int | float)}
 
     def guess(self, problem: GaitProblem) -> Guess:
         """Its curves phase by phase, stretched to the stride time of a problem."""

@@ -204,6 +204,8 @@ class PhasedProblem:
         Weight of the integral of squared control rates, by name.
     shared
         Unknowns that belong to no instant.
+    cost_factor
+        What the objective is multiplied with, a function of what is shared, if anything.
     """
 
     phases: tuple[PhaseModel, ...]
@@ -215,3 +217,4 @@ class PhasedProblem:
     control_rates: Mapping[str, float]
     control_rate_cost: Mapping[str, float]
     shared: tuple[Unknown, ...] = ()
+    cost_factor: Callable[[Mapping[str, Any]], Any] | None = None

@@ -38,6 +38,13 @@ from ergowalk.mechanics.kinematics import (
 from ergowalk.problem import JOINTS, DoubleSupport, GaitProblem
 from ergowalk.problem import constraints as c
 from ergowalk.transcription.charges import charge_own_moments, work_price
+from ergowalk.transcription.design import (
+    design_unknowns,
+    designed,
+    frees_toes,
+    reference_mass,
+    structural,
+)
 from ergowalk.transcription.devices import LOADED_JOINTS, Fittings
 from ergowalk.transcription.edges import BAND, corridor_edges
 from ergowalk.transcription.phases import (
@@ -89,7 +96,8 @@ class Walker:
         self.leg = self.legs[0]
         self.flats = tuple(HALF_PI - leg.foot_angle for leg in self.legs)
         self.flat = self.flats[0]
-        self.fittings = Fittings(problem)
+        self.fittings = Fittings(structural(problem))
+        self.reference_mass = reference_mass(problem)
         self.linear_sharing = problem.double_support is DoubleSupport.LINEAR
 
     # --- unknowns -------------------------------------------------------------------------
@@ -97,11 +105,11 @@ class Walker:
     @property
     def shared(self) -> tuple[Unknown, ...]:
         """Unknowns that belong to no instant."""
-        return ()
+        return tuple(design_unknowns(self.problem))
 
     def at(self, shared: Mapping[str, Any]) -> Walker:
         """The walker that has these values, symbols or numbers, of the unknowns of no instant."""
-        return self
+        return designed(self, shared)
 
     def coordinates(self, phase: Phase) -> tuple[Coordinate, ...]:
         """Angles of this phase; a flat foot has none, a foot on its toe tip follows the ankle.
@@ -115,7 +123,8 @@ class Walker:
             names.append("foot_2")
         angles = [Coordinate(n, rate_scale=RATE, acceleration_scale=ACCELERATION) for n in names]
         if phase.legs[1] is Contact.TOE and self.linear_sharing:
-            toes = -self.legs[1].toe_length  # the load passes between metatarsal joint and toe tip
+            # the load passes between metatarsal joint and toe tip
+            toes = -np.inf if frees_toes(self.problem) else -self.legs[1].toe_length
             angles.append(Coordinate("pressure_shift", toes, 0.0))
             angles.append(Coordinate("reaction_share", rate_scale=FORCE))
         return (*angles, *self.fittings.coordinates(phase))
@@ -321,6 +330,9 @@ class Walker:
             x_r = x_r + shift.value
             terms.equal("sharing (12)", (reaction[0] - share.value) / FORCE)
             terms.equal("sharing (12)", shift.acceleration, share.acceleration)
+            if frees_toes(self.problem):
+                room = shift.value + self.legs[1].toe_length
+                terms.nonnegative("sharing (12)", room / METRE)
         terms.equal("foot (1)", foot_balance(points, moments.ankle, moments.metatarsal, reaction))
         terms.equal("foot (1)", toe_balance(points, moments.metatarsal, reaction, x_r))
         self.toe_contact_rows(terms, points)

@@ -9,6 +9,7 @@ import numpy as np
 from ergowalk.gait.rhythm import BOUNDARIES, Contact, Phase, PhaseOrder, half_stride_phases
 from ergowalk.problem import JOINTS, GaitProblem
 from ergowalk.problem import constraints as c
+from ergowalk.transcription.design import flat_foot_links, frees_foot_angle, mass_factor
 from ergowalk.transcription.device_links import device_links, fixed_moments
 from ergowalk.transcription.phases import Instant, Join, Link, PhasedProblem, PhaseModel, Terms
 from ergowalk.transcription.walker import SHARING, Smoothing, Walker
@@ -136,6 +137,8 @@ def _chain(
         for key, value in c.fixed_at_boundaries(walker.flat).items()
         if key[2] != "control"
     }
+    flat = [k for k in fixed if k[2] == "value"] if frees_foot_angle(problem) else []
+    fixed = {key: value for key, value in fixed.items() if key not in flat}
     if with_loads:
         fixed |= fixed_moments(walker, phases)
     if walker.linear_sharing and with_loads:
@@ -159,11 +162,13 @@ def _chain(
         links=(
             Link("toe_off", "other_toe_off", lambda t: walker.at(t.shared).toe_off(at_toe_off, t)),
             Link("landing", "half_stride", lambda t: walker.at(t.shared).landing(t)),
+            *flat_foot_links(walker, (boundary for boundary, _, _ in flat)),
             *(device_links(walker, phases) if with_loads else ()),
         ),
         control_rates={n: r for n, r in rates.items() if r is not None},
         control_rate_cost={f"{j}_{i}": cost[j] for j in JOINTS for i in (1, 2)},
         shared=walker.shared,
+        cost_factor=mass_factor(walker) if with_loads else None,
     )
 
 

@@ -76,6 +76,12 @@ def _price(arguments: Namespace) -> int:
     return ACCEPTABLE
 
 
+def _design(arguments: Namespace) -> int:
+    from ergowalk.cli.design import run_design
+
+    return ACCEPTABLE if run_design(arguments) else NOT_ACCEPTABLE
+
+
 def _report(arguments: Namespace) -> int:
     from ergowalk.cli.report_page import run_report
 
@@ -144,6 +150,7 @@ COMMANDS: dict[str, Callable[[Namespace], int]] = {
     "compare": _compare,
     "fit": _fit,
     "price": _price,
+    "design": _design,
     "report": _report,
     "export": _export,
     "animate": _animate,

@@ -60,6 +60,7 @@ def build_parser() -> Parser:
     _add_compare(commands)
     _add_fit(commands)
     _add_price(commands)
+    _add_design(commands)
     _add_report(commands)
     _add_export(commands)
     _add_animate(commands)
@@ -291,6 +292,32 @@ def _add_price(commands: Any) -> None:
         help="folder for prices.png and prices.svg (default: that of the gait)",
     )
     _add_json(parser)
+
+
+def _add_design(commands: Any) -> None:
+    parser = _command(
+        commands,
+        "design",
+        "find one design of body or devices for several operating points",
+        "The numbers of the table [design] make the weighted mean of what the gaits of all points "
+        "cost least. Writes point-1.nc, point-2.nc, ... and prints a short table.",
+    )
+    parser.add_argument(
+        "design",
+        type=_path,
+        metavar="DESIGN.toml",
+        help="a design file: a problem or a preset, a table [design], a table [[point]] for each "
+        "operating point",
+    )
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=_path,
+        metavar="DIR",
+        help="folder for the gaits; files there are replaced (default: ergowalk-NAME)",
+    )
+    _add_json(parser)
+    parser.add_argument("--quiet", action="store_true", help="no progress on standard error")
 
 
 def _add_report(commands: Any) -> None:

@@ -56,7 +56,7 @@ def solve_and_write(arguments: Namespace) -> Result:
         solved.
     """
     problem = _problem(arguments)
-    inputs, choices = _stored_inputs(problem), _choices(arguments)
+    inputs, choices = stored_inputs(problem), _choices(arguments)
     human = problem.human()  # now: its table may be gone when the solver is done
     folder = arguments.output or default_folder(problem.name)
     with (
@@ -81,7 +81,7 @@ def _problem(arguments: Namespace) -> GaitProblem:
     return preset(arguments.preset or DEFAULT_PRESET)
 
 
-def _stored_inputs(problem: GaitProblem) -> dict[str, bytes]:
+def stored_inputs(problem: GaitProblem) -> dict[str, bytes]:
     """Files that make the result self-contained: the problem, and a table it names beside it."""
     source, files = problem.corridors.source, {}
     if source not in BUILT_IN:

@@ -203,8 +203,8 @@ def check_design(problem: GaitProblem) -> None:
             at = ", ".join(f"{path} = {value:g}" for path, value in corner.items())
             raise invalid(
                 "design",
-                at,
-                f"no such walker can be: {error.field}: {error.rule}",
+                None,
+                f"with {at} there is no such walker: {error.field}: {error.rule}",
                 "narrow the bounds",
             ) from None
 

@@ -238,7 +238,7 @@ class GaitProblem(Value):
         return tuple(self.devices.items())
 
     def with_design(self, values: Mapping[str, float]) -> GaitProblem:
-        """The problem with numbers of body and devices, by path, replaced; the bounds are kept."""
+        """The problem with numbers of body and devices replaced, by path; bounds are kept."""
         return with_values(self, values)
 
     def human(self) -> HumanGait:

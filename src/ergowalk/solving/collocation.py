@@ -11,8 +11,8 @@ from ergowalk.solution.progress import Report
 from ergowalk.solving.answer import describe, judged, rhythm_of
 from ergowalk.solving.candidate import Candidate, Gait
 from ergowalk.solving.check import MeshCheck
-from ergowalk.solving.easing import eased, needs_easing
 from ergowalk.solving.design_prices import as_json, found_design
+from ergowalk.solving.easing import eased, needs_easing
 from ergowalk.solving.impulses import show_impulses
 from ergowalk.solving.memory import recall_for, remember
 from ergowalk.solving.multipliers import with_fixed_multipliers

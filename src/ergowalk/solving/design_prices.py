@@ -11,8 +11,12 @@ from ergowalk.problem.objective import energy_per_metre
 from ergowalk.solvers.ipopt import Minimum
 from ergowalk.solving.stages import OrderSearch, StageResult
 
-ACTIVE = 1e-5
-"""Distance from a bound, as a share of the room between both, up to which it is active."""
+NEAR = 1e-3
+"""Distance from a bound, as a share of the scale of the unknown, beyond which it is not active.
+
+Nearer than that it is active if its multiplier exceeds that distance: an interior-point method ends
+where their product is the last barrier, far below the square of either.
+"""
 
 
 @dataclass(frozen=True)
@@ -35,19 +39,32 @@ def found_design(search: OrderSearch, result: StageResult, minimum: Minimum) -> 
     """Every free number of a stage; ``minimum`` has the multipliers of fixed variables too."""
     for free in search.problem.design.free:
         index = result.collocation.layout.shared[free.path]
-        value = float(value_at(search.solved(result), free.path))
-        slope = -minimum.variable_multipliers[index] / result.collocation.layout.scale[index]
-        unit = energy_per_metre(search.walker.reference_mass, search.problem.step_length_m)
-        low, high = _active(free, value, slope)
-        price = float(unit * slope)
-        yield Found(
-            free.path,
-            value,
-            free.lowest,
-            free.highest,
-            price if low else 0.0,
-            price if high else 0.0,
+        yield found_number(
+            free,
+            float(value_at(search.solved(result), free.path)),
+            float(minimum.variable_multipliers[index]),
+            float(result.collocation.layout.scale[index]),
+            float(energy_per_metre(search.walker.reference_mass, search.problem.step_length_m)),
         )
+
+
+def found_number(
+    free: FreeNumber, value: float, multiplier: float, scale: float, unit: float
+) -> Found:
+    """A free number and its prices, from the multiplier of its unknown, ``value / scale``.
+
+    ``unit`` is what a unit of the programme's objective is in J/m.
+    """
+    low, high = _active(free, value, -multiplier, scale)
+    price = -unit * multiplier / scale
+    return Found(
+        free.path,
+        value,
+        free.lowest,
+        free.highest,
+        price if low else 0.0,
+        price if high else 0.0,
+    )
 
 
 def as_json(design: Iterator[Found]) -> str:
@@ -55,10 +72,7 @@ def as_json(design: Iterator[Found]) -> str:
     return json.dumps([asdict(found) for found in design])
 
 
-def _active(free: FreeNumber, value: float, slope: float) -> tuple[bool, bool]:
+def _active(free: FreeNumber, value: float, slope: float, scale: float) -> tuple[bool, bool]:
     """Which bound presses; of two that leave no room, the one that the optimum would leave."""
-    near = ACTIVE * (free.highest - free.lowest)
-    return (
-        slope > 0 and value - free.lowest <= near,
-        slope < 0 and free.highest - value <= near,
-    )
+    low, high = (value - free.lowest) / scale, (free.highest - value) / scale
+    return slope > 0 and low <= min(NEAR, slope), slope < 0 and high <= min(NEAR, -slope)

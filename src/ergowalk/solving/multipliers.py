@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ergowalk.nlp import NonlinearProgramme
 from ergowalk.solvers.ipopt import Minimum
 from ergowalk.solving.stages import StageResult
 
@@ -16,7 +17,11 @@ def with_fixed_multipliers(result: StageResult) -> Minimum:
     They are what is missing to stationarity: gradient plus Jacobian' multipliers of rows plus
     multipliers of bounds is zero.
     """
-    programme, minimum = result.collocation.programme, result.minimum
+    return with_fixed(result.collocation.programme, result.minimum)
+
+
+def with_fixed(programme: NonlinearProgramme, minimum: Minimum) -> Minimum:
+    """As :func:`with_fixed_multipliers`, for a minimum of any programme."""
     gradient = np.asarray(programme.oracle.gradient(minimum.x, [])[1]).ravel()
     jacobian = programme.oracle.jacobian(minimum.x, [])[1]
     rest = -gradient - np.asarray(jacobian.T @ minimum.row_multipliers).ravel()

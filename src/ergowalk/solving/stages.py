@@ -213,7 +213,7 @@ class OrderSearch:
         return self._run("impulsive", self.phased, mesh, at, solver, before, points=2)
 
     def solved(self, result: StageResult) -> GaitProblem:
-        """The problem that the gait of a stage answers, free numbers of its design at their best."""
+        """The problem that the gait of a stage answers, free numbers at their best."""
         return self.walker.at(result.trajectory.shared).problem
 
     def residuals(self, result: StageResult) -> Residuals:

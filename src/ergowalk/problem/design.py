@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, cast
 
-from pydantic import GetJsonSchemaHandler, model_validator
+from pydantic import Field, GetJsonSchemaHandler, model_serializer, model_validator
 from pydantic_core import CoreSchema
 
 from ergowalk.errors import InputError, ProblemError
@@ -48,7 +48,7 @@ class Design(Value):
 
     _error = ProblemError
 
-    free: tuple[FreeNumber, ...] = ()
+    free: tuple[FreeNumber, ...] = Field(default=(), exclude=True)
 
     def __bool__(self) -> bool:
         """Whether any number is free."""
@@ -91,6 +91,10 @@ class Design(Value):
                 )
             found.append({"path": path, "lowest": lowest, "highest": highest})
         return {"free": found}
+
+    @model_serializer
+    def _as_table(self) -> dict[str, tuple[float, float]]:
+        return {f.path: (f.lowest, f.highest) for f in self.free}
 
     @classmethod
     def __get_pydantic_json_schema__(
@@ -195,6 +199,7 @@ def check_design(problem: GaitProblem) -> None:
             )
     if len(set(problem.design.paths)) < len(problem.design.paths):
         raise invalid("design", list(problem.design.paths), "a path stands twice", "remove one")
+    _check_swinging_foot(problem)
     bare = problem.replace(design=Design())
     for corner in _corners(problem.design):
         try:
@@ -207,6 +212,22 @@ def check_design(problem: GaitProblem) -> None:
                 f"with {at} there is no such walker: {error.field}: {error.rule}",
                 "narrow the bounds",
             ) from None
+
+
+def _check_swinging_foot(problem: GaitProblem) -> None:
+    """A damper that lets a massless foot go at once leaves nothing that would move it."""
+    for free in problem.design.free:
+        place, _, name = free.path.rpartition(".")
+        if name != "damping_nms_per_rad" or not place.endswith("ankle") or free.lowest > 0:
+            continue
+        device = value_at(problem, place)
+        if not device.own_moment and "swing" in device.active:
+            raise invalid(
+                f"design.{free.path}",
+                [free.lowest, free.highest],
+                "must be above 0: this damper moves the massless swinging foot",
+                "raise the lowest value",
+            )
 
 
 def _corners(design: Design) -> Iterator[dict[str, float]]:

@@ -209,8 +209,8 @@ class GaitProblem(Value):
     )
     design: Design = Field(
         default=Design(),
-        description='numbers of body and devices that are found with the gait, as "PATH" = [lowest, '
-        "highest]; their values above are where the search starts",
+        description="numbers of body and devices that are found with the gait, as "
+        '"PATH" = [lowest, highest]; their values above are where the search starts',
         json_schema_extra={"default": {}},
     )
     folder: Path | None = Field(

@@ -53,7 +53,7 @@ def run_design(arguments: Namespace) -> bool:
 
 
 def _found(task: DesignTask, progress: ProgressLine) -> CommonDesign:
-    from ergowalk.solving.common_design import design  # the solver takes longest to import
+    from ergowalk.solving import design  # the solver takes longest to import
 
     with Interrupts() as interrupts:
 

@@ -53,7 +53,13 @@ CASES = {
         BASE.replace(devices=FOOT),
         ("devices.ankle.stiffness_nm_per_rad", "devices.ankle.rest_angle_deg"),
     ),
-    "lengths": (BASE, ("body.shank_length_m", "body.thigh_length_m", "body.toe_length_m")),
+    "links": (
+        BASE,
+        (
+            *(f"body.{link}_length_m" for link in ("shank", "thigh", "toe")),
+            *(f"body.{link}_inertia_kgm2" for link in ("trunk", "thigh")),
+        ),
+    ),
     "foot": (
         BASE,
         ("body.heel_to_ankle_m", "body.ankle_to_metatarsal_m", "body.heel_to_metatarsal_m"),
@@ -62,7 +68,6 @@ CASES = {
         BASE.replace(devices=SPRINGS),
         ("body.foot_mass_kg", "body.thigh_inertia_kgm2", "body.trunk_com_m"),
     ),
-    "inertias": (BASE, ("body.trunk_inertia_kgm2", "body.thigh_inertia_kgm2")),
     "linear sharing": (LINEAR, ("body.toe_length_m",)),
 }
 

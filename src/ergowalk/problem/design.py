@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 TABLES, LEGS, GIVEN = ("body", "devices"), ("leg_1", "leg_2"), ("gravity_m_s2",)
 """Tables whose numbers may be free, alone or of one leg, and numbers in them that may not."""
 
-MOST_CORNERS = 256
+MOST_CORNERS = 64
 """Corners of the bounds that are looked at before anything is solved."""
 
 

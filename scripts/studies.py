@@ -128,7 +128,7 @@ def bodies() -> str:
 
 
 STIFFNESS = "devices.ankle.stiffness_nm_per_rad"
-SCANNED = tuple(200.0 + 50.0 * k for k in range(15))
+SCANNED = (*(200.0 + 50.0 * k for k in range(8)), *(600.0 + 25.0 * k for k in range(7)))
 """Stiffnesses [N m/rad] that are tried one by one."""
 
 

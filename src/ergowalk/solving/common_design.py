@@ -24,8 +24,8 @@ from ergowalk.solving.multipliers import with_fixed
 from ergowalk.transcription.walker import Smoothing
 
 SOLVERS = (
-    Ipopt(tolerance=1e-7, strategy="monotone", barrier_start=1e-4, push=1e-4),
-    Ipopt(tolerance=1e-7),
+    Ipopt(tolerance=1e-6, strategy="monotone", barrier_start=1e-6, push=1e-4),
+    Ipopt(tolerance=1e-6),
 )
 """How the common search is tried: close to the gaits that it begins with, then anyhow."""
 

@@ -7,11 +7,17 @@ printed rhythm, which leaves one phase order and the fewest local optima.
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from functools import cache
 
+import numpy as np
+from matplotlib.figure import Figure
+
 import ergowalk
-from blocks import table, write_studies
+import ergowalk.solving
+from blocks import ROOT, table, write_studies
 from ergowalk.anthropometry import Person
+from ergowalk.plots import style
 from ergowalk.problem import GaitProblem, JointBounds, Objective
 from ergowalk.problem.scaling import for_person
 
@@ -121,6 +127,57 @@ def bodies() -> str:
     return table(("person", "L [m]", "T [s]", "E [J/m]", "E / M g", "audit"), rows)
 
 
+STIFFNESS = "devices.ankle.stiffness_nm_per_rad"
+SCANNED = (*(200.0 + 50.0 * k for k in range(8)), *(600.0 + 25.0 * k for k in range(7)))
+"""Stiffnesses [N m/rad] that are tried one by one."""
+
+
+def ankle_stiffness() -> str:
+    """The stiffness of an elastic ankle as a free number, and E at fifteen that are held."""
+    base = ergowalk.preset("ankle-exoskeleton")
+    start = solution(base)
+    free = base.replace(design={STIFFNESS: (100.0, 1500.0)})
+    found = ergowalk.solve(free, start=start)
+    print(f"free: {found.status}", file=sys.stderr, flush=True)
+    return stiffness_told(found, ergowalk.follow(start, STIFFNESS, SCANNED))
+
+
+def stiffness_told(found: ergowalk.Solution, scan: Sequence[ergowalk.solving.Waypoint]) -> str:
+    """The table of that study; its picture goes to docs/assets."""
+    stiffness = np.array([waypoint.value for waypoint in scan])
+    energy = np.array([waypoint.solution.energy_per_metre for waypoint in scan])
+    (number,) = found.design
+    best, least = vertex(stiffness, energy)
+    optimum = (number["value"], found.energy_per_metre)
+    style.save(draw_scan(stiffness, energy, optimum), ROOT / "docs" / "assets" / "design.png")
+    rows = [(f"{w.value:g}", *_energies(w.solution), _verdict(w.solution)) for w in scan]
+    rows.append((f"**free: {optimum[0]:.1f}**", *_energies(found), _verdict(found)))
+    rows.append((f"vertex of the scan: {best:.1f}", f"{least:.1f}", "", ""))
+    return table(("stiffness [N m/rad]", "E [J/m]", "on a finer mesh", "acceptable"), rows)
+
+
+def vertex(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
+    """Where the parabola through the lowest point and its neighbours is least, and its value."""
+    k = min(max(int(np.argmin(y)), 1), len(x) - 2)
+    a, b, c = np.polyfit(x[k - 1 : k + 2] - x[k], y[k - 1 : k + 2], 2)
+    return float(x[k] - b / (2 * a)), float(c - b**2 / (4 * a))
+
+
+def draw_scan(x: np.ndarray, y: np.ndarray, optimum: tuple[float, float]) -> Figure:
+    """E over the stiffness, and the optimum as a free number."""
+    with style.styled():
+        figure = Figure(figsize=(6.0, 3.6), layout="constrained")
+        axes = figure.add_subplot()
+        axes.plot(x, y, "o-", color=style.FAINT, ms=4, lw=1, label="held, one solve each")
+        axes.plot(*optimum, "o", color=style.LEG_2, ms=8, label="found with the gait")
+        axes.axvline(optimum[0], color=style.LEG_2, lw=0.6, ls=":")
+        axes.set_xlabel("stiffness of the ankle spring [N m/rad]")
+        axes.set_ylabel("E [J/m]")
+        axes.set_title("Elastic ankle: fifteen stiffnesses, and the one that is found")
+        axes.legend()
+    return figure
+
+
 def _on_meshes(found: ergowalk.Solution) -> str:
     cells = [f"{m['energy_per_metre']:.1f} on {m['elements']}" for m in found.mesh_history]
     return ", ".join(cells)
@@ -142,6 +199,7 @@ STUDIES = {
     "foot length": foot_length,
     "bodies": bodies,
     "objectives": objectives,
+    "ankle stiffness": ankle_stiffness,
 }
 
 

@@ -27,6 +27,8 @@ from ergowalk.quantities import ALL_QUANTITIES
 API = {
     **{name: f"ergowalk.{name}" for name in ergowalk.__all__},
     "SplineOptions": "ergowalk.solving.SplineOptions",
+    "CommonDesign": "ergowalk.solving.CommonDesign",
+    "Design": "ergowalk.problem.Design",
     "audit": "ergowalk.audit.audit",
     "AuditReport": "ergowalk.audit.AuditReport",
     "compare": "ergowalk.comparison.compare",

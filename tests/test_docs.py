@@ -19,6 +19,7 @@ from ergowalk.audit.report import Residual
 from ergowalk.cli.parser import build_parser
 from ergowalk.problem import PRESETS
 from ergowalk.problem.files import problem_from_toml
+from ergowalk.solving.design_file import read_design
 from ergowalk.study import read_sweep
 from ergowalk.study.cases import cases_of
 
@@ -86,6 +87,9 @@ def test_problem_and_sweep_files_on_the_pages_are_such_files(page: Path, tmp_pat
         if re.search(r"^\[+(grid|cases|random)\b", text, re.M):
             (tmp_path / "sweep.toml").write_text(text)
             assert cases_of(read_sweep(tmp_path / "sweep.toml"))
+        elif "[[point]]" in text:
+            (tmp_path / "design.toml").write_text(text)
+            assert read_design(tmp_path / "design.toml").problems
         else:
             assert problem_from_toml(text, file=str(page)).step_length_m > 0
 

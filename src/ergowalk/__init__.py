@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ergowalk.problem import GaitProblem, preset
     from ergowalk.problem.files import read_problem
     from ergowalk.solution import Solution
-    from ergowalk.solving import follow, solve
+    from ergowalk.solving import design, follow, solve
     from ergowalk.study import preferred, read_sweep, sweep
 
 _HOMES = {
@@ -29,6 +29,7 @@ _HOMES = {
     "Corridor": "ergowalk.corridors",
     "GaitProblem": "ergowalk.problem",
     "Solution": "ergowalk.solution",
+    "design": "ergowalk.solving",
     "follow": "ergowalk.solving",
     "human_gait": "ergowalk.corridors",
     "preferred": "ergowalk.study",
@@ -45,6 +46,7 @@ __all__ = [
     "Corridor",
     "GaitProblem",
     "Solution",
+    "design",
     "follow",
     "human_gait",
     "preferred",

@@ -8,7 +8,7 @@ differ.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -47,7 +47,8 @@ class LegParameters:
     def foot_angle(self) -> float:
         """Angle phi_m = AMH of the foot triangle [rad], by the law of cosines."""
         c, l_h = self.ankle_to_metatarsal, self.heel_to_metatarsal
-        return math.acos((c**2 + l_h**2 - self.heel_to_ankle**2) / (2 * c * l_h))
+        cosine = (c**2 + l_h**2 - self.heel_to_ankle**2) / (2 * c * l_h)
+        return cosine.arccos() if hasattr(cosine, "arccos") else math.acos(cosine)
 
     @property
     def ankle_height(self) -> float:
@@ -102,7 +103,8 @@ class Body(Value):
 
     def exchanged(self) -> Self:
         """The body with the legs exchanged."""
-        return self._with_pairs(lambda pair: pair[::-1])
+        pairs = {f: v for f in _LEG_FIELDS.values() if isinstance(v := getattr(self, f), tuple)}
+        return self.model_copy(update={f: v[::-1] for f, v in pairs.items()})
 
     def mirrored(self, share: float = 0.0) -> Self:
         """The body with two equal legs, the mean of both, or with a share of their difference."""
@@ -113,11 +115,8 @@ class Body(Value):
                 return mean
             return mean + share * (pair[0] - mean), mean + share * (pair[1] - mean)
 
-        return self._with_pairs(nearer)
-
-    def _with_pairs(self, change: Callable[[tuple[float, float]], Any]) -> Self:
         pairs = {f: v for f in _LEG_FIELDS.values() if isinstance(v := getattr(self, f), tuple)}
-        changed: Self = self.replace(**{f: change(v) for f, v in pairs.items()}) if pairs else self
+        changed: Self = self.replace(**{f: nearer(v) for f, v in pairs.items()}) if pairs else self
         return changed
 
     @property

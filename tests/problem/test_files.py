@@ -295,8 +295,8 @@ def test_the_schema_knows_every_key_and_is_json():
     schema = json_schema()
     assert json.loads(json.dumps(schema)) == schema
     written = tomllib.loads(problem_to_toml(preset("berbyuk2002")))
-    # a person becomes the body; a file without devices says nothing of them
-    assert set(schema["properties"]) == {*written, "person", "devices"}
+    # a person becomes the body; a file without devices or a design says nothing of them
+    assert set(schema["properties"]) == {*written, "person", "devices", "design"}
     assert schema["required"] == ["step_length_m", "stride_time_s"]
     for table, keys in written.items():
         if isinstance(keys, dict):

@@ -9,6 +9,7 @@ import xarray as xr
 
 from ergowalk.audit.asked import attribute_line, corridor_lines, finite_line, mesh_line
 from ergowalk.audit.bounds import bound_lines, pressure_line
+from ergowalk.audit.design import design_lines
 from ergowalk.audit.devices import device_lines
 from ergowalk.audit.loads import balance_lines, energy_lines
 from ergowalk.audit.motion import curve_lines, foot_lines, symmetry_lines
@@ -52,6 +53,7 @@ def audit(dataset: xr.Dataset, folder: Path | None = None) -> AuditReport:
             *energy_lines(record),
             objective_line(record),
             *device_lines(record),
+            *design_lines(record),
             mesh_line(record),
             *grid_lines(record),
             phase_line(record),

@@ -47,6 +47,7 @@ DEVICE_ENERGY = Residual("device_energy", "energy that devices give over a strid
 DEVICE_IN_PLACE = Residual(
     "device_in_place", "no own moment where a device takes its place", 1e-3, PER_WEIGHT_METRE
 )
+DESIGN = Residual("design", "free numbers of the design inside their bounds", 1e-9)
 WORK_ENERGY = Residual("work_energy", "work against mechanical energy", 1e-3)
 MESH = Residual("mesh", "energy per metre against a finer mesh", 1e-2)
 TIME_SPAN = Residual("time_span", "time runs from 0 to T", 1e-9, "T")

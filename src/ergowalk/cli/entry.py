@@ -21,6 +21,7 @@ COMMANDS = {
     "compare": ("gaits", "run_compare"),
     "fit": ("fit", "run_fit"),
     "price": ("price", "run_price"),
+    "design": ("design", "run_design"),
     "report": ("report_page", "run_report"),
     "export": ("export", "run_export"),
     "animate": ("film", "run_animate"),

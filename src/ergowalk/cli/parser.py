@@ -9,7 +9,7 @@ from ergowalk.cli.arguments.measuring import add_fit
 from ergowalk.cli.arguments.problems import add_init, add_presets
 from ergowalk.cli.arguments.serving import add_app
 from ergowalk.cli.arguments.showing import add_animate, add_export, add_figures, add_report
-from ergowalk.cli.arguments.solving import add_solve
+from ergowalk.cli.arguments.solving import add_design, add_solve
 from ergowalk.cli.arguments.sweeping import add_map, add_sweep
 
 IN_ORDER = (
@@ -18,6 +18,7 @@ IN_ORDER = (
     add_compare,
     add_fit,
     add_price,
+    add_design,
     add_report,
     add_export,
     add_animate,

@@ -78,6 +78,7 @@ class Result:
                 joint: {"gives": gives, "takes": takes}
                 for joint, (gives, takes) in solution.device_energy.items()
             },
+            "design": solution.design,
             "cost_of_transport": solution.cost_of_transport,
             "energy_share": energy_shares(solution),
             "rhythm": solution.rhythm.as_dict(),
@@ -115,6 +116,7 @@ class Result:
             ("E", f"{joules} with {found['limits']}"),
             *self._objective_row(),
             *self._device_rows(),
+            *design_rows(self.solution.design),
             ("cost of transport", f"{found['cost_of_transport']:.4f} (E / M g)"),
             ("energy share", ", ".join(shares)),
             *self._rhythm_rows(),
@@ -225,6 +227,18 @@ class Result:
             where = f" ({place})" if place else ""
             lines.append(f"{line.what}: {value}, at most {line.tolerance:.3g}{unit}{where}")
         return lines
+
+
+def design_rows(design: Sequence[Mapping[str, Any]]) -> Rows:
+    """Each number that was found with the gait, its bounds, and what an active one costs."""
+    rows = []
+    for found in design:
+        text = f"{found['path']} = {found['value']:.6g}, free from {found['low']:g} to "
+        text += f"{found['high']:g}"
+        prices = [(w, found[f"{w}_price"]) for w in ("low", "high") if found[f"{w}_price"]]
+        told = [f"the {w}est allowed, {p:+.4g} J/m per unit more" for w, p in prices]
+        rows.append(("design", f"{text} ({', '.join(told) or 'no bound is active'})"))
+    return rows
 
 
 def energy_shares(solution: Solution) -> dict[str, float]:

@@ -20,7 +20,7 @@ from ergowalk.cli.streams import ProgressLine, emit, emit_json, note
 from ergowalk.corridors import BUILT_IN, HumanGait
 from ergowalk.errors import CorridorError, InputError
 from ergowalk.problem import DEFAULT_PRESET, GaitProblem, preset
-from ergowalk.problem.files import problem_to_toml, read_problem
+from ergowalk.problem.files import problem_from_toml, problem_to_toml, read_problem
 
 if TYPE_CHECKING:
     from ergowalk.solution import Progress, Solution
@@ -56,7 +56,7 @@ def solve_and_write(arguments: Namespace) -> Result:
         solved.
     """
     problem = _problem(arguments)
-    inputs, choices = _stored_inputs(problem), _choices(arguments)
+    inputs, choices = stored_inputs(problem), _choices(arguments)
     human = problem.human()  # now: its table may be gone when the solver is done
     folder = arguments.output or default_folder(problem.name)
     with (
@@ -81,7 +81,7 @@ def _problem(arguments: Namespace) -> GaitProblem:
     return preset(arguments.preset or DEFAULT_PRESET)
 
 
-def _stored_inputs(problem: GaitProblem) -> dict[str, bytes]:
+def stored_inputs(problem: GaitProblem) -> dict[str, bytes]:
     """Files that make the result self-contained: the problem, and a table it names beside it."""
     source, files = problem.corridors.source, {}
     if source not in BUILT_IN:
@@ -132,6 +132,10 @@ def _solved(problem: GaitProblem, choices: dict[str, Any], progress: ProgressLin
 def _store(solution: Solution, inputs: dict[str, bytes], folder: Path) -> Solution:
     """Write the gait, with the problem as it stands beside it: what fails later cannot lose it."""
     text = inputs["problem.toml"].decode("utf-8")
+    if solution.problem.design:  # what was free has been found
+        source = problem_from_toml(text).corridors
+        text = problem_to_toml(solution.problem.replace(corridors=source))
+        inputs = {**inputs, "problem.toml": text.encode("utf-8")}
     stored = type(solution)(solution.dataset.assign_attrs(problem=text))
     for name, content in inputs.items():
         write_bytes(folder / name, content)

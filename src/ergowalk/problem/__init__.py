@@ -1,5 +1,6 @@
 """Problem A: givens, constraints (2)-(9), objective (10), physical limits, presets."""
 
+from ergowalk.problem.design import Design
 from ergowalk.problem.devices import Device, Devices
 from ergowalk.problem.gait_problem import Corridors, DoubleSupport, GaitProblem, RhythmBounds
 from ergowalk.problem.limits import JointBounds, Limits
@@ -12,6 +13,7 @@ __all__ = [
     "JOINTS",
     "PRESETS",
     "Corridors",
+    "Design",
     "Device",
     "Devices",
     "DoubleSupport",

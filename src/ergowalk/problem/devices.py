@@ -20,6 +20,9 @@ Joint = Literal["hip", "knee", "ankle", "metatarsal"]
 
 EVERY_PHASE: tuple[PhaseName, ...] = ("swing", "heel", "flat", "forefoot", "toe")
 
+RADIAN = math.pi / 180
+"""Radians of a degree."""
+
 _NEEDS = {
     "locked": (False, False),
     "free": (False, False),
@@ -75,15 +78,15 @@ class Device(Value):
         return contact.name.lower() in self.active
 
     @property
-    def below(self) -> float:
+    def below(self) -> Any:
         """Stiffness below the rest angle [N m/rad]."""
         below = self.stiffness_below_nm_per_rad
-        return self.stiffness_nm_per_rad if below == "same" else float(below)
+        return self.stiffness_nm_per_rad if below == "same" else below
 
     @property
-    def rest(self) -> float:
+    def rest(self) -> Any:
         """Rest angle [rad]; zero where it is that at which the latch closes."""
-        return 0.0 if self.rest_angle_deg == "latched" else math.radians(self.rest_angle_deg)
+        return 0.0 if self.rest_angle_deg == "latched" else self.rest_angle_deg * RADIAN
 
     @property
     def law(self) -> Law:

@@ -16,6 +16,7 @@ from typing import Any
 from pydantic.fields import FieldInfo
 
 from ergowalk.errors import InputError, ProblemError
+from ergowalk.problem.design import Design
 from ergowalk.problem.gait_problem import GaitProblem
 from ergowalk.values import Value, is_key
 
@@ -170,6 +171,9 @@ def _header(remark: str) -> list[str]:
 
 def _table(value: Value, place: str, commented: bool) -> Iterator[str]:
     """The lines of one table: its own keys, then the tables below it."""
+    if isinstance(value, Design):
+        yield from (f"{_literal(f.path)} = {_literal((f.lowest, f.highest))}" for f in value.free)
+        return
     fields = {name: f for name, f in type(value).model_fields.items() if not f.exclude}
     inner = {name: v for name in fields if isinstance(v := getattr(value, name), Value)}
     keys = {

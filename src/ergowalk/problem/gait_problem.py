@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import StrEnum
 from pathlib import Path
 from typing import Any, Literal, Self
@@ -13,6 +14,7 @@ from ergowalk.body import Body, LegParameters
 from ergowalk.corridors import ANGLES, Corridor, HumanGait, human_gait
 from ergowalk.errors import BodyError, CorridorError, ProblemError
 from ergowalk.gait.rhythm import PRINTED_RHYTHM, PhaseOrder, Rhythm
+from ergowalk.problem.design import Design, check_design, with_values
 from ergowalk.problem.devices import Device, Devices
 from ergowalk.problem.legs import Same, Stride, exchanged, has_leg_tables, of_leg
 from ergowalk.problem.limits import Limits, Off
@@ -243,6 +245,12 @@ class GaitProblem(Value):
         description="passive devices, a table [devices.hip], [devices.knee], [devices.ankle] or "
         "[devices.metatarsal] for each joint that has one",
     )
+    design: Design = Field(
+        default=Design(),
+        description="numbers of body and devices that are found with the gait, as "
+        '"PATH" = [lowest, highest]; their values above are where the search starts',
+        json_schema_extra={"default": {}},
+    )
     folder: Path | None = Field(
         default=None, exclude=True, description="where relative file names start"
     )
@@ -259,6 +267,8 @@ class GaitProblem(Value):
             parts.append(f"minimised: {self.objective.sentence()}")
         if self.devices.sentence():
             parts.append(f"devices: {self.devices.sentence()}")
+        if self.design:
+            parts.append(f"free: {self.design.sentence()}")
         return "; ".join(parts)
 
     def devices_of(self, leg: int) -> tuple[tuple[str, Device], ...]:
@@ -292,21 +302,23 @@ class GaitProblem(Value):
 
     def exchanged(self) -> GaitProblem:
         """The same problem with the legs exchanged: leg 2 is called leg 1."""
-        found: GaitProblem = self.replace(
-            body=self.body.exchanged(),
-            stride=self.stride.exchanged(),
-            **{name: exchanged(getattr(self, name)) for name in LEG_SPECIFIC},
-        )
-        return found
+        changes = {name: exchanged(getattr(self, name)) for name in LEG_SPECIFIC}
+        changes |= {"body": self.body.exchanged(), "stride": self.stride.exchanged()}
+        return self.model_copy(update=changes)  # may hold expressions: nothing to validate anew
 
     def mirrored(self) -> GaitProblem:
         """The problem of a walker whose legs are equal: the mean of both, and what both share."""
         found: GaitProblem = self.replace(
             body=self.body.mirrored(),
             stride=Stride(legs="mirrored"),
+            design=Design(),
             **{name: getattr(self, name).replace(leg_1=None, leg_2=None) for name in LEG_SPECIFIC},
         )
         return found
+
+    def with_design(self, values: Mapping[str, float]) -> GaitProblem:
+        """The problem with numbers of body and devices replaced, by path; bounds are kept."""
+        return with_values(self, values)
 
     def human(self) -> HumanGait:
         """The human data that the corridors come from."""
@@ -380,6 +392,11 @@ class GaitProblem(Value):
                 f"out of reach: these legs span at most {longest:.2f} m between heel contacts",
                 "shorten the step or lengthen the legs",
             )
+        return self
+
+    @model_validator(mode="after")
+    def _design_can_be(self) -> Self:
+        check_design(self)
         return self
 
 

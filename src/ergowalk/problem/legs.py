@@ -53,8 +53,7 @@ def exchanged(table: V) -> V:
     if not has_leg_tables(table):
         return table
     first, second = (getattr(table, name) for name in LEG_TABLES)
-    swapped: V = table.replace(leg_1=second, leg_2=first)
-    return swapped
+    return table.model_copy(update={"leg_1": second, "leg_2": first})
 
 
 class Stride(Value):

@@ -155,6 +155,16 @@ class Solution:
         works = device_works(self.dataset)
         return {j: (gives / distance, takes / distance) for j, (gives, takes) in works.items()}
 
+    @property
+    def design(self) -> list[dict[str, Any]]:
+        """Numbers of the design found with the gait: path, value, low, high and their prices.
+
+        ``low_price`` and ``high_price`` are what moving a bound changes [J/m per unit], 0 where
+        it is not active. Empty where nothing was free.
+        """
+        found: list[dict[str, Any]] = json.loads(self.dataset.attrs.get("design", "[]"))
+        return found
+
     def audit(self) -> AuditReport:
         """Every residual of the audit, recomputed from the curves by independent code."""
         from ergowalk.audit import audit

@@ -53,11 +53,12 @@ def dense(
 ) -> tuple[xr.Dataset, float]:
     """Dense curves of a stage and their E [J/m], with a line more in the history."""
     search, result = candidate.search, candidate.result
-    dataset = dense_gait(search.problem, search.halves, result.trajectory)
+    problem = search.solved(result)
+    dataset = dense_gait(problem, search.halves, result.trajectory)
     energy = dense_energy(dataset, search.problem.step_length_m)
     history.append(record(result, energy, **flags))
     if not search.problem.objective.is_eq10:
-        history[-1]["objective_per_metre"] = minimised(dataset, search.problem)
+        history[-1]["objective_per_metre"] = minimised(dataset, problem)
     return dataset, energy
 
 

@@ -11,8 +11,10 @@ from ergowalk.solution.progress import Report
 from ergowalk.solving.answer import describe, judged, rhythms_of, step_lengths
 from ergowalk.solving.candidate import Candidate, Gait
 from ergowalk.solving.check import MeshCheck
+from ergowalk.solving.design_prices import as_json, found_design
 from ergowalk.solving.impulses import show_impulses
 from ergowalk.solving.memory import recall_for, recall_twice, remember
+from ergowalk.solving.multipliers import with_fixed_multipliers
 from ergowalk.solving.refinement import refine, taken_over
 from ergowalk.solving.searching import Search, best_of, from_mirrored, in_all_orders
 from ergowalk.solving.stages import COARSE, POINTS, Effort, OrderSearch, Start
@@ -86,18 +88,18 @@ def _begin(search: Search, problem: GaitProblem, start: Solution) -> Candidate |
     times = begun.times(problem, here.halves)
     if times is None:
         return None
-    shared = begun.shared(problem)
+    start_at = Start(begun.guess(problem, here.halves), times, begun.shared(problem))
     before = recall_for(start, here, POINTS)
     if before is not None:
-        result = here.continued(before, times, shared)
+        result = here.continued(before, start_at)
         if result.minimum.converged:
             return Candidate(here, result, continued=True)
     before = recall_twice(start, here, POINTS) if problem.full_stride else None
     if before is not None:
-        result = here.continued(before, times, shared, APART)
+        result = here.continued(before, start_at, APART)
         if result.minimum.converged:
             return Candidate(here, result)
-    result = here.started(Start(begun.guess(problem, here.halves), times, shared))
+    result = here.started(start_at)
     return Candidate(here, result) if result.minimum.converged else None
 
 
@@ -113,7 +115,7 @@ def _finished(
 ) -> Solution:
     """Attributes, audit, and the verdict."""
     search = gait.candidate.search
-    problem, curves = search.problem, gait.candidate.result.trajectory
+    problem, curves = search.solved(gait.candidate.result), gait.candidate.result.trajectory
     tried = {
         c.search.name: {
             "energy_at_nodes": c.result.energy_at_nodes,
@@ -131,6 +133,9 @@ def _finished(
         # apart from the rest of the history: the same solve twice differs in its clocks alone
         "mesh_times": json.dumps([record.pop("solve_time", 0.0) for record in gait.history]),
     }
+    if problem.design:
+        minimum = with_fixed_multipliers(gait.candidate.result)
+        extra["design"] = as_json(found_design(search, gait.candidate.result, minimum))
     dataset = describe(
         gait.dataset,
         problem,

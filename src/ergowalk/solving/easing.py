@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ergowalk.problem import Devices, GaitProblem
+from ergowalk.problem import Design, Devices, GaitProblem
 from ergowalk.problem.devices import EasedDevice
 from ergowalk.solvers.ipopt import Ipopt
 from ergowalk.solving.stages import SEARCH_BARRIER, OrderSearch, StageResult, Start
@@ -36,9 +36,10 @@ def needs_easing(problem: GaitProblem) -> bool:
 def eased(search: OrderSearch, bare: OrderSearch, result: StageResult) -> StageResult:
     """The gait of a phase order on few elements, its devices fitted step by step.
 
-    ``result`` is where it begins: the gait of a search ``bare`` without those devices.
+    ``result`` is where it begins: the gait of a search ``bare`` without those devices. Numbers of a
+    design are held until the devices are alone.
     """
-    problem, stage = search.problem, bare
+    problem, stage = search.problem.replace(design=Design()), bare
     for i, (price, stiffness) in enumerate(STEPS):
         if not result.minimum.converged:
             break
@@ -52,12 +53,14 @@ def eased(search: OrderSearch, bare: OrderSearch, result: StageResult) -> StageR
         else:
             result = stage.stage(words, mesh, start, before=result)
     start = Start.at(result.trajectory, fitted(search, stage, result))
-    return search.stage("devices alone", result.collocation.mesh, start)
+    mesh, design = result.collocation.mesh, search.problem.design
+    alone = search.stage("devices alone", mesh, start, held=bool(design))
+    return search.free_rhythm(alone) if design and alone.minimum.converged else alone
 
 
 def without_devices(search: OrderSearch) -> OrderSearch:
     """The same search for a walker without any."""
-    return _search(search, search.problem.replace(devices=Devices()))
+    return _search(search, search.problem.replace(devices=Devices(), design=Design()))
 
 
 def helped(devices: Devices, price: float, stiffness: float) -> Devices:

@@ -14,6 +14,7 @@ import xarray as xr
 
 from ergowalk.errors import GaitFileError
 from ergowalk.gait.rhythm import PhaseOrder
+from ergowalk.problem.design import free_values
 from ergowalk.problem.objective import energy_per_metre
 from ergowalk.solution import Solution
 from ergowalk.solvers.ipopt import Minimum
@@ -116,7 +117,8 @@ def recall_twice(solution: Solution, search: OrderSearch, points: int) -> StageR
         return None
     start = Start.twice(half.trajectory, search.problem)
     collocation = Collocation(search.phased, half.collocation.mesh * 2, points, search.store)
-    x = collocation.pack(start.guess, start.times, start.shared)
+    shared = {**free_values(search.problem), **start.shared}
+    x = collocation.pack(start.guess, start.times, shared)
     last = half.minimum
     variables, rows = collocation.repeat_multipliers(
         half.collocation, last.variable_multipliers, last.row_multipliers
@@ -161,6 +163,6 @@ def _stage(solution: Solution, mesh: dict[str, Any], search: OrderSearch) -> Sta
         build_time=0.0,
         solve_time=0.0,
     )
-    work = minimum.objective * solution.problem.body.total_mass
+    work = minimum.objective * search.walker.reference_mass
     energy = energy_per_metre(work, search.distance)
     return StageResult(collocation, collocation.unpack(x), minimum, energy)

@@ -8,7 +8,7 @@ plus the small smoothing costs, per metre.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,12 +16,15 @@ from numpy.typing import NDArray
 from ergowalk.corridors import ANGLES
 from ergowalk.errors import ErgowalkError, ProblemError
 from ergowalk.problem import GaitProblem
+from ergowalk.problem.design import bounds_of, with_bound
 from ergowalk.problem.objective import energy_per_metre
 from ergowalk.solution import Solution
-from ergowalk.solvers.ipopt import Minimum
+from ergowalk.solving.design_prices import found_design
 from ergowalk.solving.memory import recall
+from ergowalk.solving.multipliers import with_fixed_multipliers
 from ergowalk.solving.stages import OrderSearch, StageResult
 from ergowalk.transcription.collocation import Collocation
+from ergowalk.transcription.design import reference_mass
 from ergowalk.transcription.halves import in_phases
 from ergowalk.transcription.walking import walking_problem
 from ergowalk.values import Value
@@ -124,30 +127,21 @@ def price_of(solution: Solution, name: str) -> float:
     return slope
 
 
-def with_fixed_multipliers(result: StageResult) -> Minimum:
-    """The minimum with the multipliers of fixed variables, which the solver never sees.
-
-    They are what is missing to stationarity: gradient plus Jacobian' multipliers of rows plus
-    multipliers of bounds is zero.
-    """
-    programme, minimum = result.collocation.programme, result.minimum
-    gradient = np.asarray(programme.oracle.gradient(minimum.x, [])[1]).ravel()
-    jacobian = programme.oracle.jacobian(minimum.x, [])[1]
-    rest = -gradient - np.asarray(jacobian.T @ minimum.row_multipliers).ravel()
-    fixed = programme.lower == programme.upper
-    bounds = np.where(fixed, rest, minimum.variable_multipliers)
-    return replace(minimum, variable_multipliers=bounds)
-
-
 def given_numbers(problem: GaitProblem) -> Iterator[tuple[str, float]]:
-    """(path, value) of every number of the problem that a gait depends on."""
+    """(path, value) of every number of the problem that a gait depends on.
+
+    Of a number that is free these are its bounds, ``design.PATH.low`` and ``design.PATH.high``.
+    """
     for name in ("step_length_m", "stride_time_s"):
         yield name, getattr(problem, name)
     yield "corridors.width_sd", problem.corridors.width_sd
     tables = ["limits", "body"]
     tables += [] if problem.objective.is_eq10 else ["objective"]
     for table in (*tables, "devices"):
-        yield from _numbers(getattr(problem, table), table)
+        for name, value in _numbers(getattr(problem, table), table):
+            if name not in problem.design.paths:
+                yield name, value
+    yield from bounds_of(problem)
 
 
 def given_number(problem: GaitProblem, name: str) -> float:
@@ -190,6 +184,10 @@ class _Optimum:
 
         None where the problem does not allow the number to be changed alone.
         """
+        if name.startswith("design."):
+            path, _, end = name.removeprefix("design.").rpartition(".")
+            found = {f.path: f for f in found_design(self.search, self.result, self.minimum)}
+            return found[path].low_price if end == "low" else found[path].high_price
         for step in (STEP * abs(value), -STEP * abs(value)):
             try:
                 problem = changed(self.search.problem, name, value + step)
@@ -210,7 +208,7 @@ class _Optimum:
         total += _pressed(minimum.row_multipliers, rows, *programme.row_bounds)
         bounds = programme.lower, programme.upper
         total += _pressed(minimum.variable_multipliers, minimum.x, *bounds)
-        mass = problem.body.total_mass
+        mass = reference_mass(problem)
         distance = len(self.search.halves) * problem.step_length_m
         energy: float = energy_per_metre(total * mass, distance)
         return energy
@@ -219,6 +217,8 @@ class _Optimum:
 def changed(problem: GaitProblem, name: str, value: float) -> GaitProblem:
     """The problem with the number at a path replaced."""
     first, *rest = name.split(".")
+    if first == "design":
+        return with_bound(problem, name, value)
     inner = _replaced(getattr(problem, first), rest, value) if rest else value
     replaced: GaitProblem = problem.replace(**{first: inner})
     return replaced

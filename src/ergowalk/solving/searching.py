@@ -57,7 +57,8 @@ def _from_human_means(search: OrderSearch, perturbation: Perturbation | None) ->
         bare = without_devices(search)
         return Candidate(search, eased(search, bare, bare.fixed_rhythm(bare.fit(), perturbation)))
     held = search.fixed_rhythm(search.fit(), perturbation)
-    if not held.minimum.converged or search.problem.rhythm.fixed:
+    all_held = search.problem.rhythm.fixed and not search.problem.design
+    if not held.minimum.converged or all_held:
         return Candidate(search, held)
     return Candidate(search, search.free_rhythm(held, perturbation))
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from ergowalk.gait.rhythm import PhaseOrder
 from ergowalk.problem import GaitProblem
+from ergowalk.problem.design import free_values
 from ergowalk.problem.objective import energy_per_metre
 from ergowalk.solution.progress import Progress, Report
 from ergowalk.solvers.ipopt import Ipopt, Minimum
@@ -146,7 +147,7 @@ class OrderSearch:
     def fit(self) -> Trajectory:
         """The motion nearest to the human means that stands on the ground, rhythm as printed."""
         times = starting_times(self.problem, starting_rhythm(self.problem, self.order))
-        phased = with_times(kinematic_problem(self.problem, self.order), times)
+        phased = with_times(self._held(kinematic_problem(self.problem, self.order)), times)
         start = Start(human_guess(self.walker, self.order, times), times)
         mesh = self._mesh(times, COARSE)
         return self._run("fit to human means", phased, mesh, start, points=2).trajectory
@@ -162,7 +163,8 @@ class OrderSearch:
         if perturbation is not None:
             guess = perturbation.curves(fit, guess, self.order, self.problem.stride_time_s)
         start = Start(guess, fit.times)
-        phased, mesh = with_times(self.phased, fit.times), self._mesh(fit.times, SEARCH)
+        phased = with_times(self._held(self.phased), fit.times)
+        mesh = self._mesh(fit.times, SEARCH)
         solver = Ipopt(tolerance=1e-3, barrier_end=SEARCH_BARRIER)
         return self._run("rhythm held", phased, mesh, start, solver)
 
@@ -171,18 +173,12 @@ class OrderSearch:
         mesh = self._mesh(start.times, COARSE)
         return self._run("from a gait", self.phased, mesh, start, _warm(1e-4, 1e-3))
 
-    def continued(
-        self,
-        before: StageResult,
-        times: Mapping[str, float],
-        shared: Mapping[str, float],
-        barrier: float = 1e-6,
-    ) -> StageResult:
+    def continued(self, before: StageResult, begin: Start, barrier: float = 1e-6) -> StageResult:
         """From the point and the multipliers of a neighbour's gait, on its mesh.
 
-        ``before`` stands in the unknowns of this search.
+        ``before`` stands in the unknowns of this search; ``begin`` says what else is known.
         """
-        start = Start(before.trajectory.as_guess(), times, shared)
+        start = replace(begin, guess=before.trajectory.as_guess())
         solver = _warm(1e-6, barrier)
         return self._solve("from a gait", before.collocation, start, solver, before)
 
@@ -221,10 +217,16 @@ class OrderSearch:
         start: Start,
         solver: Ipopt | None = None,
         before: StageResult | None = None,
+        *,
+        held: bool = False,
     ) -> StageResult:
-        """A stage of a search, called so in words, as far as the barrier of the search."""
+        """A stage of a search, called so in words, as far as the barrier of the search.
+
+        What is free of the design stands where the search begins if ``held``.
+        """
         solver = solver or _warm(1e-4, SEARCH_BARRIER)
-        return self._run(words, self.phased, mesh, start, solver, before)
+        phased = self._held(self.phased) if held else self.phased
+        return self._run(words, phased, mesh, start, solver, before)
 
     def impulsive(self, start: StageResult, mesh: Mesh | None = None) -> StageResult:
         """The gait of a problem without minimiser; by default on the graded mesh of the search.
@@ -239,9 +241,23 @@ class OrderSearch:
         solver = _warm(1e-6, 1e-3)
         return self._run("impulsive", self.phased, mesh, at, solver, before, points=2)
 
+    def solved(self, result: StageResult) -> GaitProblem:
+        """The problem that the gait of a stage answers, free numbers at their best."""
+        given = {**result.trajectory.times, **result.trajectory.shared}
+        return self.walker.at(given).asked
+
     def residuals(self, result: StageResult) -> Residuals:
         """What the mesh leaves undone between its nodes."""
         return mesh_residuals(self.halves, result.trajectory)
+
+    def _held(self, phased: PhasedProblem) -> PhasedProblem:
+        """The same with the free numbers of the design where the problem has them."""
+        values = free_values(self.problem)
+        shared = (
+            replace(x, lower=values[x.name], upper=values[x.name]) if x.name in values else x
+            for x in phased.shared
+        )
+        return replace(phased, shared=tuple(shared))
 
     def _mesh(self, times: Mapping[str, float], level: float) -> Mesh:
         return mesh_of(self.halves, times, self.problem.stride_time_s, level)
@@ -271,7 +287,8 @@ class OrderSearch:
     ) -> StageResult:
         began = time.process_time()
         programme = collocation.programme
-        x = collocation.pack(start.guess, start.times, start.shared)
+        shared = {**free_values(self.problem), **start.shared}
+        x = collocation.pack(start.guess, start.times, shared)
         _ = programme.oracle
         self.effort.build_time += time.process_time() - began
         multipliers = None
@@ -288,7 +305,8 @@ class OrderSearch:
         )
 
     def _energy(self, objective: float) -> float:
-        energy: float = energy_per_metre(objective * self.walker.mass, self.distance)
+        work = objective * self.walker.reference_mass
+        energy: float = energy_per_metre(work, self.distance)
         return energy
 
     def _monitor(self, stage: str, elements: int):  # type: ignore[no-untyped-def]

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ergowalk.gait.footprints import trailing_print
 from ergowalk.gait.rhythm import PhaseOrder, half_stride_phases
 from ergowalk.problem import JOINTS, GaitProblem
+from ergowalk.problem.design import value_at
 from ergowalk.quantities import SEGMENTS
 from ergowalk.solution import Solution
 from ergowalk.transcription.curves import Guess, Samples
@@ -62,11 +63,17 @@ class StartingGait:
         return found
 
     def shared(self, problem: GaitProblem) -> dict[str, float]:
-        """Its unknowns of no instant, for a problem whose legs have their own."""
+        """Its unknowns of no instant: step 1 where the legs have their own, and the design."""
         if not problem.full_stride:
-            return {}
+            return self.design(problem)
         first, second = self.gait.step_lengths
-        return {STEP_1: 2 * problem.step_length_m * first / (first + second)}
+        step_1 = 2 * problem.step_length_m * first / (first + second)
+        return {STEP_1: step_1, **self.design(problem)}
+
+    def design(self, problem: GaitProblem) -> dict[str, float]:
+        """What this gait has of a problem's free numbers, as far as their bounds allow."""
+        found = {f.path: (f, value_at(self.gait.problem, f.path)) for f in problem.design.free}
+        return {p: f.inside(v) for p, (f, v) in found.items() if isinstance(v, int | float)}
 
     def guess(self, problem: GaitProblem, halves: Sequence[Half]) -> Guess:
         """Its curves phase by phase, stretched to the stride time of a problem."""

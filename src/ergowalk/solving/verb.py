@@ -127,6 +127,13 @@ def _check_objective(problem: GaitProblem, method: str) -> None:
             field="objective",
             value=problem.objective.sentence(),
         )
+    if method != "collocation" and problem.design:
+        raise ProblemError(
+            f"method {method!r} holds body and devices",
+            "leave out the table, or use method 'collocation'",
+            field="design",
+            value=problem.design.sentence(),
+        )
     if method != "collocation" and any(problem.devices.everything()):
         raise ProblemError(
             f"method {method!r} knows no devices",

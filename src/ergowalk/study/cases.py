@@ -148,6 +148,8 @@ def _key(sweep: Sweep, values: dict[str, Any], problem: GaitProblem | None, solv
 def _content(problem: GaitProblem) -> dict[str, Any]:
     content = problem.model_dump(mode="json")
     del content["name"]
+    if not problem.design:
+        del content["design"]  # what is solved again must have changed
     content["corridors"]["source"] = digest_of_table(problem) or problem.corridors.source
     return content
 

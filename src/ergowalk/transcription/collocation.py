@@ -139,7 +139,8 @@ class Collocation:
         """
         new_variables = np.zeros(self.layout.size)
         for name, index in self.layout.shared.items():
-            new_variables[index] = variables[coarse.layout.shared[name]]
+            if name in coarse.layout.shared:
+                new_variables[index] = variables[coarse.layout.shared[name]]
         new_rows, first = [], 0
         for here, there, fine, old, pk in zip(
             self.layout.phases,

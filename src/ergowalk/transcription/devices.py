@@ -91,8 +91,8 @@ class Fittings:
         device = dict(self.acting(role, contact)).get("ankle")
         if contact is not Contact.SWING or device is None or device.kind in ("locked", "free"):
             return None
-        idle = not (device.stiffness_nm_per_rad or device.below or device.damping_nms_per_rad)
-        return None if idle else device
+        law = (device.stiffness_nm_per_rad, device.below, device.damping_nms_per_rad)
+        return None if all(map(_nought, law)) else device
 
     def coordinates(self, phase: Phase) -> Iterator[Coordinate]:
         """Deflection of the damper of each spring and damper in series [rad]."""
@@ -222,7 +222,7 @@ class Fittings:
             slip = instant.coordinates[f"slip_ankle_{role + 1}"]
             return [x.angle - slip.value, x.rate - slip.rate]
         law = device.law
-        if not law.damping:
+        if _nought(law.damping):
             return [x.angle, x.rate]
         return [x.rate + law.spring(x.angle) / law.damping]
 
@@ -255,6 +255,11 @@ def on_toe_tip(leg: Any, motion: BodyMotion, role: int) -> LegMotion:
     )
 
 
+def _nought(number: Any) -> bool:
+    """Whether a number of a device is zero; one that is free never is."""
+    return isinstance(number, int | float) and number == 0
+
+
 def _still(x: Rotation, *, held: bool) -> Any:
     """Acceleration of a deflection that stands still, errors pulled back to rest."""
     damped = x.acceleration + 2 * STIFFENING * x.rate
@@ -267,7 +272,7 @@ def _relaxed(device: Device, x: Rotation, slip: Any) -> Any:
         x = Rotation(x.angle - slip.value, x.rate - slip.rate, x.acceleration - slip.acceleration)
         return _still(x, held=True) / ACCELERATION
     law = device.law
-    if not law.damping:
+    if _nought(law.damping):
         return _still(x, held=True) / ACCELERATION
     change = x.acceleration + law.slope(x.angle) * x.rate / law.damping
     miss = x.rate + law.spring(x.angle) / law.damping

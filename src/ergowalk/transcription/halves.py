@@ -51,11 +51,9 @@ def halves_of(problem: GaitProblem, orders: Orders, smoothing: Smoothing) -> tup
     low, high = problem.stride.bounds("length")
     step_1 = (length * (1 + low) / 2, length * (1 + high) / 2)
     walkers = []
-    for i, (seen, lasts) in enumerate(
-        zip((problem, problem.exchanged()), _durations(problem), strict=True)
-    ):
+    for i, lasts in enumerate(_durations(problem)):
         steps = UnequalSteps(i, length, step_1, lasts, "half_stride" + TAGS[1 - i])
-        walkers.append(Walker(seen, smoothing, steps))
+        walkers.append(Walker(problem, smoothing, steps))
     return tuple(Half(w, o, t) for w, o, t in zip(walkers, orders, TAGS, strict=True))
 
 

@@ -95,6 +95,9 @@ def phase_kernel(
     for place in (0.0, *BETWEEN, 1.0):
         rows.add_call(local.call(at_ends, place), place)
     cost = cost + _control_rates(local, rows)
+    if phase.cost_factor is not None:
+        names = [x.name for x in phase.shared]
+        cost = phase.cost_factor(dict(zip(names, ca.vertsplit(local.shared), strict=True))) * cost
     _control_bounds(local, rows)
     variables = ca.vertcat(local.variables, *slacks)
     kernel = Kernel(

@@ -144,6 +144,8 @@ class PhaseModel:
         Bound on |control'| by name, where there is one.
     control_rate_cost
         Weight of the integral of squared control rates, by name.
+    cost_factor
+        What all costs are multiplied with, a function of what is shared, if anything.
     """
 
     name: str
@@ -162,6 +164,7 @@ class PhaseModel:
     absolute_weights: tuple[float, float] = (1.0, 1.0)
     control_rates: Mapping[str, float] = field(default_factory=dict)
     control_rate_cost: Mapping[str, float] = field(default_factory=dict)
+    cost_factor: Callable[[Mapping[str, Any]], Any] | None = None
 
 
 @dataclass(frozen=True)

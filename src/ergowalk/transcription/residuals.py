@@ -186,7 +186,7 @@ class _PhaseErrors:
             segments = (r.angle for r in (leg.thigh, leg.shank, leg.foot, leg.toes))
             angles = joint_angles(walker.legs[i], self.motion.trunk.angle, *segments)
             for name, angle in zip(ANGLES, angles, strict=False):
-                if walker.asked[i].width(name) is None:
+                if walker.bands[i].width(name) is None:
                     continue
                 corridor, place = walker.corridors[i][name], since[i] / stride
                 outside = np.maximum(corridor.lower(place) - angle, angle - corridor.upper(place))

@@ -39,6 +39,13 @@ from ergowalk.mechanics.kinematics import (
 from ergowalk.problem import JOINTS, DoubleSupport, GaitProblem
 from ergowalk.problem import constraints as c
 from ergowalk.transcription.charges import charge_own_moments, work_price
+from ergowalk.transcription.design import (
+    design_unknowns,
+    designed,
+    frees_toes,
+    reference_mass,
+    structural,
+)
 from ergowalk.transcription.devices import LOADED_JOINTS, Fittings
 from ergowalk.transcription.edges import BAND, corridor_edges
 from ergowalk.transcription.phases import (
@@ -80,19 +87,25 @@ class Walker:
     def __init__(
         self, problem: GaitProblem, smoothing: Smoothing, unequal: UnequalSteps | None = None
     ) -> None:
-        self.problem, self.smoothing, self.unequal = problem, smoothing, unequal
+        def seen(given: GaitProblem) -> GaitProblem:
+            """The problem with the leg that leads in this half as leg 1."""
+            return given.exchanged() if unequal is not None and unequal.half else given
+
+        self.asked, self.smoothing, self.unequal = problem, smoothing, unequal
+        self.problem = problem = seen(problem)
         self.small = smoothing.scaled(work_price(problem.objective))
         self.legs: tuple[LegParameters, LegParameters] = (problem.body.leg(0), problem.body.leg(1))
         self.mass, self.gravity = problem.body.total_mass, problem.body.gravity_m_s2
         self.coefficients: Coefficients = coefficients(problem.body)
         self.corridors = (problem.angle_corridors(0), problem.angle_corridors(1))
-        self.asked = (problem.corridors_of(0), problem.corridors_of(1))
+        self.bands = (problem.corridors_of(0), problem.corridors_of(1))
         self.limits = (problem.limits_of(0), problem.limits_of(1))
         self.steps = Steps.equal(problem)
         self.leg = self.legs[0]
         self.flats = tuple(HALF_PI - leg.foot_angle for leg in self.legs)
         self.flat = self.flats[0]
-        self.fittings = Fittings(problem)
+        self.fittings = Fittings(seen(structural(self.asked)))
+        self.reference_mass = reference_mass(self.asked)
         self.linear_sharing = problem.double_support is DoubleSupport.LINEAR
 
     # --- unknowns -------------------------------------------------------------------------
@@ -100,19 +113,21 @@ class Walker:
     @property
     def shared(self) -> tuple[Unknown, ...]:
         """Unknowns that belong to no instant."""
-        return () if self.unequal is None else self.unequal.unknowns
+        steps = () if self.unequal is None else self.unequal.unknowns
+        return (*design_unknowns(self.asked), *steps)
 
     @property
     def seen(self) -> tuple[Unknown, ...]:
         """These, and instants of other phases, as the phases see them."""
-        return () if self.unequal is None else self.unequal.seen
+        steps = () if self.unequal is None else self.unequal.seen
+        return (*design_unknowns(self.asked), *steps)
 
     def at(self, shared: Mapping[str, Any]) -> Walker:
         """The walker that has these values, symbols or numbers, of what its phases see."""
-        if self.unequal is None:
-            return self
-        found = copy(self)
-        found.steps = self.unequal.given(shared)
+        found = designed(self, shared)
+        if self.unequal is not None:
+            found = copy(found)
+            found.steps = self.unequal.given(shared)
         return found
 
     @property
@@ -132,7 +147,8 @@ class Walker:
             names.append("foot_2")
         angles = [Coordinate(n, rate_scale=RATE, acceleration_scale=ACCELERATION) for n in names]
         if phase.legs[1] is Contact.TOE and self.linear_sharing:
-            toes = -self.legs[1].toe_length  # the load passes between metatarsal joint and toe tip
+            # the load passes between metatarsal joint and toe tip
+            toes = -np.inf if frees_toes(self.problem) else -self.legs[1].toe_length
             angles.append(Coordinate("pressure_shift", toes, 0.0))
             angles.append(Coordinate("reaction_share", rate_scale=FORCE))
         return (*angles, *self.fittings.coordinates(phase))
@@ -210,7 +226,7 @@ class Walker:
         terms = Terms()
         for label, place in self.corridor_places(phase, instant, motion):
             _, joint, leg, _ = label.split()
-            if self.asked[int(leg) - 1].width(joint) is not None:
+            if self.bands[int(leg) - 1].width(joint) is not None:
                 terms.between(label, place, -1.0, 1.0)
         return terms
 
@@ -350,6 +366,9 @@ class Walker:
             x_r = x_r + shift.value
             terms.equal("sharing (12)", (reaction[0] - share.value) / FORCE)
             terms.equal("sharing (12)", shift.acceleration, share.acceleration)
+            if frees_toes(self.problem):
+                room = shift.value + self.legs[1].toe_length
+                terms.nonnegative("sharing (12)", room / METRE)
         terms.equal("foot (1)", foot_balance(points, moments.ankle, moments.metatarsal, reaction))
         terms.equal("foot (1)", toe_balance(points, moments.metatarsal, reaction, x_r))
         self.toe_contact_rows(terms, points)

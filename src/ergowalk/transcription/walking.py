@@ -10,6 +10,7 @@ import numpy as np
 from ergowalk.gait.rhythm import BOUNDARIES, Contact, Phase, PhaseOrder, half_stride_phases
 from ergowalk.problem import JOINTS, GaitProblem
 from ergowalk.problem import constraints as c
+from ergowalk.transcription.design import flat_foot_links, frees_foot_angle, mass_factor
 from ergowalk.transcription.device_links import device_links, fixed_moments
 from ergowalk.transcription.halves import Orders, halves_of, joined
 from ergowalk.transcription.phases import Instant, Join, Link, PhasedProblem, PhaseModel, Terms
@@ -70,6 +71,7 @@ def _half(walker: Walker, order: PhaseOrder) -> PhasedProblem:
             curves=walker.corridor_curves,
             shared=walker.seen,
             absolute_weights=problem.objective.of_work,
+            cost_factor=mass_factor(walker),
             **_rates(walker),
         )
 
@@ -118,6 +120,7 @@ def kinematic_problem(problem: GaitProblem, order: PhaseOrder) -> PhasedProblem:
             path,
             nothing,
             curves=walker.corridor_curves,
+            shared=walker.seen,
         )
 
     return _chain(walker, order, model, with_loads=False)
@@ -143,6 +146,8 @@ def _chain(
         for key, value in c.fixed_at_boundaries(walker.flat).items()
         if key[2] != "control"
     }
+    flat = [k for k in fixed if k[2] == "value"] if frees_foot_angle(problem) else []
+    fixed = {key: value for key, value in fixed.items() if key not in flat}
     if with_loads:
         fixed |= fixed_moments(walker, phases)
     if walker.linear_sharing and with_loads:
@@ -161,6 +166,7 @@ def _chain(
         links=(
             Link("toe_off", "other_toe_off", lambda t: walker.at(t.shared).toe_off(at_toe_off, t)),
             Link("landing", "half_stride", lambda t: walker.at(t.shared).landing(t)),
+            *flat_foot_links(walker, (boundary for boundary, _, _ in flat)),
             *(device_links(walker, phases) if with_loads else ()),
         ),
         shared=walker.shared,

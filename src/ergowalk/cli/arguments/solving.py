@@ -1,4 +1,4 @@
-"""The arguments of ``solve``."""
+"""The arguments of ``solve`` and ``design``, which look for gaits."""
 
 from __future__ import annotations
 
@@ -105,3 +105,24 @@ def _add_starts(parser: Parser) -> None:
         help="processes that share the starts; the answer does not depend on it (default: one "
         "for each processor)",
     )
+
+
+def add_design(commands: Any) -> None:
+    """Add ``ergowalk design``."""
+    parser = add_command(
+        commands,
+        "design",
+        "find one design of body or devices for several operating points",
+        "The numbers of the table [design] make the weighted mean of what the gaits of all points "
+        "cost least. Writes point-1.nc, point-2.nc, ... and prints a short table.",
+    )
+    parser.add_argument(
+        "design",
+        type=path,
+        metavar="DESIGN.toml",
+        help="a design file: a problem or a preset, a table [design], a table [[point]] for each "
+        "operating point",
+    )
+    add_result_folder(parser)
+    add_json(parser)
+    add_quiet(parser)

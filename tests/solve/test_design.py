@@ -23,8 +23,8 @@ from ergowalk.transcription.walker import Smoothing
 
 PRINTED = preset("berbyuk2002-rhythm")
 PATH = "devices.hip.stiffness_below_nm_per_rad"
-SUIT = Devices(hip=Device(kind="spring", stiffness_below_nm_per_rad=200.0))
-WIDE = (100.0, 300.0)
+SUIT = Devices(hip=Device(kind="spring", stiffness_below_nm_per_rad=120.0))
+WIDE = (30.0, 300.0)
 HIGH = f"design.{PATH}.high"
 
 
@@ -50,8 +50,8 @@ class Stage:
 
     def again(self, problem: GaitProblem) -> Stage:
         """Another problem on the same mesh, begun here, with the multipliers."""
-        smoothing, order = self.search.walker.smoothing, self.search.order
-        search = OrderSearch(problem, order, smoothing, Effort(), None)
+        smoothing, orders = self.search.walker.smoothing, self.search.orders
+        search = OrderSearch(problem, orders, smoothing, Effort(), None)
         start = replace(Start.at(self.result.trajectory), shared={})  # where the problem has it
         return Stage(search, solved(search, self.result, start, 1e-6, self.result))
 
@@ -73,9 +73,9 @@ def free(paper: Solution) -> Stage:
     """The stiffness of an elastic hip exosuit as a free number."""
     _, stage = recall(paper)
     problem = paper.problem.replace(devices=SUIT, design={PATH: WIDE})
-    search = OrderSearch(problem, paper.rhythm.order, Smoothing(), Effort(), None)
+    search = OrderSearch(problem, (paper.rhythm.order,), Smoothing(), Effort(), None)
     begun = StartingGait(paper)
-    start = Start(begun.guess(problem), stage.trajectory.times)
+    start = Start(begun.guess(problem, search.halves), stage.trajectory.times)
     return Stage(search, solved(search, stage, start, 1e-3, None))
 
 

@@ -69,6 +69,14 @@ _KNEE_UNIT = Device(
 )
 """A knee that yields slowly in stance and is free from the other heel's contact on; assumed."""
 
+_LATCHED_FOOT = Device(
+    kind="spring",
+    own_moment=False,
+    stiffness_nm_per_rad=300.0,
+    active=("heel", "flat", "forefoot", "toe"),
+)
+"""The same ankle without damping; a latch lets the foot go in swing, or no gait is found."""
+
 _ORTHOSIS = Device(kind="spring", stiffness_nm_per_rad=150.0, stiffness_below_nm_per_rad="same")
 """A leaf of 150 N m/rad (2.6 N m a degree); assumed."""
 
@@ -184,13 +192,14 @@ PRESETS = {
         ),
         Preset(
             "above-knee-prosthesis",
-            "the same with a knee that a damper of 200 N m s/rad holds in stance and that is free "
-            "in toe contact and swing, thigh, shank and foot 3.14 kg lighter (assumed)",
+            "berbyuk2002 with a knee of leg 2 that a damper of 200 N m s/rad holds in stance and "
+            "that is free from then on, an elastic ankle that is free in swing, thigh, shank and "
+            "foot 3.14 kg lighter, corridors of leg 2 of 3 and 4 SD (all assumed)",
             lambda: _one_leg(
                 "above-knee-prosthesis",
                 body=_ABOVE_KNEE,
-                devices=LegDevices(knee=_KNEE_UNIT, ankle=_PROSTHETIC_FOOT),
-                corridors=LegCorridors(knee_width_sd="off", ankle_width_sd="off"),
+                devices=LegDevices(knee=_KNEE_UNIT, ankle=_LATCHED_FOOT),
+                corridors=LegCorridors(width_sd=3.0, knee_width_sd=4.0, ankle_width_sd="off"),
             ),
         ),
         Preset(

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ergowalk.gait.footprints import trailing_print
 from ergowalk.gait.rhythm import PhaseOrder, half_stride_phases
 from ergowalk.problem import JOINTS, GaitProblem
-from ergowalk.problem.design import value_at
+from ergowalk.problem.design import free_values, value_at
 from ergowalk.quantities import SEGMENTS
 from ergowalk.solution import Solution
 from ergowalk.transcription.curves import Guess, Samples
@@ -77,7 +77,8 @@ class StartingGait:
 
     def guess(self, problem: GaitProblem, halves: Sequence[Half]) -> Guess:
         """Its curves phase by phase, stretched to the stride time of a problem."""
-        given = {**self.shared(problem), **(self.times(problem, halves) or {})}
+        times = self.times(problem, halves) or {}
+        given = {**free_values(problem), **self.shared(problem), **times}
         slower = self.stride_time / problem.stride_time_s
         each = [self._half(i, half.walker.at(given), slower) for i, half in enumerate(halves)]
         count = len(halves[0].phases)

@@ -126,7 +126,7 @@ def draw(found: dict[str, ergowalk.Solution], target: Path) -> None:
     axes.set_yticks(np.arange(len(found)), list(found), fontsize=8)
     axes.invert_yaxis()
     axes.set_xlabel("absolute work of the own moments [J/m]")
-    axes.legend(loc="lower right", frameon=False, fontsize=8)
+    axes.legend(loc="upper right", frameon=False, fontsize=8)
     axes.spines[["top", "right"]].set_visible(False)
     figure.savefig(target, dpi=150)
 

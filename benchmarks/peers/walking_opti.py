@@ -304,7 +304,7 @@ def main() -> None:
     posed = pose(problem, chosen.elements)
     opti, built, iterations = posed.opti, _cpu(), 0
     if chosen.smooth_first:
-        value = _minimised(opti, posed.smooth, chosen.limit)
+        value = _minimised(opti, posed.smooth, chosen.limit / 2)  # the rest is for the other
         opti.set_initial(opti.x, value(opti.x))
         iterations = int(opti.stats()["iter_count"])
     left = chosen.limit - (_cpu() - built)

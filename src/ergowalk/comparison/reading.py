@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +16,7 @@ from ergowalk.body import Body
 from ergowalk.comparison.signals import COMPARED
 from ergowalk.corridors import HumanGait, human_gait
 from ergowalk.errors import GaitFileError
+from ergowalk.quantities import DEVICE_MOMENT
 
 Array = NDArray[np.float64]
 
@@ -25,10 +26,14 @@ DEFAULT_SOURCE = "winter-natural"
 
 @dataclass(frozen=True)
 class StrideCurves:
-    """A leg's curves over its stride: ``fraction`` 0 ... 1 (n,), and (n,) values by signal."""
+    """A leg's curves over its stride: ``fraction`` 0 ... 1 (n,), and (n,) values by signal.
+
+    ``borne`` is the part of moments that devices bear, where there are any.
+    """
 
     fraction: Array
     values: dict[str, Array]
+    borne: dict[str, Array] = field(default_factory=dict)
 
 
 def human_of(dataset: xr.Dataset, folder: Path | None = None) -> HumanGait:
@@ -85,7 +90,7 @@ def stride_curves(dataset: xr.Dataset, leg: int = 1) -> StrideCurves:
         If a variable is missing or not finite, or the times do not run forward from 0.
     """
     mass = body_of(dataset).total_mass
-    values = {}
+    values, borne = {}, {}
     for signal in COMPARED:
         if signal.name.startswith("reaction"):
             axis = signal.name[-1]
@@ -95,15 +100,22 @@ def stride_curves(dataset: xr.Dataset, leg: int = 1) -> StrideCurves:
             joint, kind = signal.name.split("_")
             raw = curve(dataset, f"joint_{kind}", {"leg": leg, "joint": joint})
             values[signal.name] = np.degrees(raw) if kind == "angle" else raw / mass
+            if kind == "moment" and DEVICE_MOMENT in dataset:
+                part = curve(dataset, DEVICE_MOMENT, {"leg": leg, "joint": joint}) / mass
+                if np.any(part):
+                    borne[signal.name] = part
     fraction = stride_fraction(dataset)
     if leg == 1:
-        return StrideCurves(fraction, values)
+        return StrideCurves(fraction, values, borne)
     contact = heel_contact(dataset)
     first = int(np.searchsorted(fraction, contact + _SAME, "right")) - 1  # the side after it
     later = np.concatenate([fraction[first:] - contact, fraction[: first + 1] + 1 - contact])
     later[[0, -1]] = 0.0, 1.0
-    turned = {n: np.concatenate([v[first:], v[: first + 1]]) for n, v in values.items()}
-    return StrideCurves(later, turned)
+
+    def turned(curves: dict[str, Array]) -> dict[str, Array]:
+        return {n: np.concatenate([v[first:], v[: first + 1]]) for n, v in curves.items()}
+
+    return StrideCurves(later, turned(values), turned(borne))
 
 
 def heel_contact(dataset: xr.Dataset) -> float:

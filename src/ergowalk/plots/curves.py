@@ -64,6 +64,11 @@ class Material:
             stride_curves(dataset, 2) if 2 in legs_with_curves(dataset) else None,
         )
 
+    def legs(self) -> list[tuple[StrideCurves, str]]:
+        """The curves of leg 1, and of leg 2 if it has its own, with their colours."""
+        other = [] if self.other is None else [(self.other, style.LEG_2)]
+        return [(self.gait, style.GAIT), *other]
+
 
 def draw_curve(
     axes: Axes, material: Material, signal: ComparedSignal, hand: Hand = SCREEN.hand
@@ -84,6 +89,10 @@ def draw_curve(
         other = material.other
         percent, values = 100 * other.fraction, other.values[signal.name]
         axes.plot(percent, values, color=style.LEG_2, linewidth=hand.optimum, zorder=3.5)
+    for leg, colour in material.legs():
+        if signal.name in leg.borne:
+            x, part = 100 * leg.fraction, leg.borne[signal.name]
+            axes.plot(x, part, ":", color=colour, linewidth=hand.optimum, zorder=3.8)
     axes.axhline(0.0, color="black", linewidth=0.5, zorder=2)
     axes.set_xlim(0, 100)
     axes.set_xticks(range(0, 101, 20))
@@ -204,6 +213,11 @@ def curve_keys(
         keys.append(
             Line2D([], [], color=style.LEG_2, linewidth=hand.optimum, label="optimum, leg 2")
         )
+    for leg, colour in material.legs():
+        if any(name in leg.borne for name in names):
+            line = Line2D([], [], color=colour, linewidth=hand.optimum, linestyle=":")
+            line.set_label("borne by the device")
+            keys.append(line)
     if any(name in material.human.curves for name in names):
         name = material.human.name.replace("\\", "/").rsplit("/", 1)[-1]
         label = f"human mean ({name if len(name) <= 24 else name[:23] + '…'})"

@@ -92,6 +92,13 @@ def write_figures(
     return paths
 
 
+MOST_KEYS = 4
+"""Keys of a legend in one row, and in all as a rule."""
+
+KEY_HEIGHT = 0.17
+"""Height of a row of keys [inch]."""
+
+
 def _page(build: Build, dataset: xr.Dataset, material: Material, sheet: Sheet) -> Figure:
     with style.styled(sheet):
         figure = build(dataset, material, sheet)
@@ -129,11 +136,20 @@ def _curve_page(signal: ComparedSignal) -> Build:
         if not sheet.captioned:
             _title(axes, f"{_name(signal)} of leg 1, {_size(dataset)}", pad=16)
         keys = curve_keys(material, signal, hand=sheet.hand)
-        columns = min(len(keys), sheet.columns or len(keys))
+        most = sheet.columns or MOST_KEYS
+        columns = min(len(keys), most)
+        _make_room(figure, axes, math.ceil(len(keys) / most) - math.ceil(MOST_KEYS / most))
         figure.legend(handles=keys, loc="lower center", ncols=columns)
         return figure
 
     return build
+
+
+def _make_room(figure: Figure, axes: Axes, rows: int) -> None:
+    """Lift the lower edge of the axes for more rows of a legend than usual."""
+    place = axes.get_position()
+    lift = max(rows, 0) * KEY_HEIGHT / figure.get_figheight()
+    axes.set_position((place.x0, place.y0 + lift, place.width, place.height - lift))
 
 
 def _overview_page(dataset: xr.Dataset, material: Material, sheet: Sheet) -> Figure:

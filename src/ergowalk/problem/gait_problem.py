@@ -5,24 +5,22 @@ from __future__ import annotations
 from collections.abc import Mapping
 from enum import StrEnum
 from pathlib import Path
-from typing import Any, Literal, Self
+from typing import Any, Self
 
 from pydantic import Field, model_validator
 
 from ergowalk.anthropometry import Person
 from ergowalk.body import Body, LegParameters
 from ergowalk.corridors import ANGLES, Corridor, HumanGait, human_gait
-from ergowalk.errors import BodyError, CorridorError, ProblemError
-from ergowalk.gait.rhythm import PRINTED_RHYTHM, PhaseOrder, Rhythm
+from ergowalk.errors import BodyError, ProblemError
+from ergowalk.problem.corridors import Corridors
 from ergowalk.problem.design import Design, check_design, with_values
 from ergowalk.problem.devices import Device, Devices
-from ergowalk.problem.legs import Same, Stride, exchanged, has_leg_tables, of_leg
-from ergowalk.problem.limits import Limits, Off
+from ergowalk.problem.legs import Stride, exchanged, has_leg_tables, of_leg
+from ergowalk.problem.limits import Limits
 from ergowalk.problem.objective import Objective
-from ergowalk.values import INPUT_ONLY, FiniteFloat, PositiveFloat, Value, invalid
-
-Width = PositiveFloat | Literal["same"] | Off
-Instant = FiniteFloat | tuple[FiniteFloat, FiniteFloat]
+from ergowalk.problem.rhythm import RhythmBounds
+from ergowalk.values import INPUT_ONLY, PositiveFloat, Value, invalid
 
 
 class DoubleSupport(StrEnum):
@@ -30,175 +28,6 @@ class DoubleSupport(StrEnum):
 
     OPTIMAL = "optimal"
     LINEAR = "linear"
-
-
-class LegRhythm(Value):
-    """Rhythm parameters of one leg; "same" as of both."""
-
-    _error = ProblemError
-
-    heel_end: Instant | Same = Field(default="same", description="end of rotation over the heel")
-    heel_off: Instant | Same = Field(default="same", description="heel-off")
-    toe_off: Instant | Same = Field(default="same", description="toe-off")
-
-
-class RhythmBounds(Value):
-    """Rhythm parameters of a leg as fractions of T after its heel contact.
-
-    One number fixes, a pair bounds (3).
-    """
-
-    _error = ProblemError
-
-    heel_end: Instant = Field(
-        default=(0.02, 0.20), description="end of rotation over the heel, tau^h, fraction of T"
-    )
-    heel_off: Instant = Field(default=(0.05, 0.45), description="heel-off, tau^m, fraction of T")
-    toe_off: Instant = Field(
-        default=(0.52, 0.66), description="toe-off, tau^s, fraction of T (after 0.5)"
-    )
-    order: PhaseOrder | Literal["best"] = Field(
-        default="best",
-        description="'toe-off-first', 'flat-first' (other toe-off before or after foot-flat), "
-        "or 'best' to try both",
-    )
-    leg_1: LegRhythm | None = Field(default=None, description="rhythm of leg 1 that differs")
-    leg_2: LegRhythm | None = Field(default=None, description="rhythm of leg 2 that differs")
-
-    def bounds(self, name: str) -> tuple[float, float]:
-        """Lower and upper bound of a parameter; equal where it is fixed."""
-        value: Instant = getattr(self, name)
-        return value if isinstance(value, tuple) else (value, value)
-
-    @property
-    def fixed(self) -> bool:
-        """Whether nothing is free."""
-        return all(
-            low == high for low, high in map(self.bounds, ("heel_end", "heel_off", "toe_off"))
-        )
-
-    def start(self) -> Rhythm:
-        """The printed rhythm, moved inside the bounds and in order (3): where the search begins."""
-
-        def inside(name: str) -> float:
-            low, high = self.bounds(name)
-            printed: float = getattr(PRINTED_RHYTHM, name)
-            return min(max(printed, low), high)
-
-        heel_off = inside("heel_off")
-        if max(inside("heel_end"), inside("toe_off") - 0.5) >= heel_off:
-            heel_off = self.bounds("heel_off")[1]
-
-        def before_heel_off(name: str, shift: float = 0.0) -> float:
-            instant = inside(name)
-            if instant - shift < heel_off:
-                return instant
-            return (self.bounds(name)[0] + heel_off + shift) / 2
-
-        return Rhythm(before_heel_off("heel_end"), heel_off, before_heel_off("toe_off", 0.5))
-
-    def orders(self) -> tuple[PhaseOrder, ...]:
-        """The phase orders to try: those that the bounds leave room for."""
-        (h_low, h_high), (s_low, s_high) = self.bounds("heel_end"), self.bounds("toe_off")
-        possible = {
-            PhaseOrder.TOE_OFF_FIRST: s_low - 0.5 <= h_high,
-            PhaseOrder.FLAT_FIRST: h_low < s_high - 0.5,
-        }
-        if self.order != "best":
-            return (PhaseOrder(self.order),)
-        return tuple(order for order, room in possible.items() if room)
-
-    @model_validator(mode="after")
-    def _legs_in_order(self) -> Self:
-        if has_leg_tables(self):
-            for leg in (0, 1):
-                of_leg(self, leg)
-        return self
-
-    @model_validator(mode="after")
-    def _in_order(self) -> Self:
-        for name, (first, last) in _RANGES.items():
-            low, high = self.bounds(name)
-            if not first < low <= high < last:
-                raise invalid(
-                    name,
-                    getattr(self, name),
-                    f"must lie between {first} and {last} (exclusive), lower bound first",
-                    "give a fraction of the stride time, or a pair of them",
-                )
-        if self.bounds("heel_end")[0] >= self.bounds("heel_off")[1]:
-            raise invalid(
-                "heel_end",
-                self.heel_end,
-                f"foot-flat must come before heel-off at {self.heel_off} (3)",
-                "lower heel_end or raise heel_off",
-            )
-        if self.bounds("toe_off")[0] - 0.5 >= self.bounds("heel_off")[1]:
-            raise invalid(
-                "toe_off",
-                self.toe_off,
-                "the other leg must leave the ground (toe_off - 0.5) before heel-off at "
-                f"{self.heel_off} (3)",
-                "lower toe_off or raise heel_off",
-            )
-        return self
-
-    @model_validator(mode="after")
-    def _order_possible(self) -> Self:
-        h, s = self.bounds("heel_end"), self.bounds("toe_off")
-        late_flat = self.order == PhaseOrder.TOE_OFF_FIRST and s[0] - 0.5 > h[1]
-        early_flat = self.order == PhaseOrder.FLAT_FIRST and h[0] >= s[1] - 0.5
-        if late_flat or early_flat:
-            raise invalid(
-                "order",
-                str(self.order),
-                f"contradicts heel_end {self.heel_end} and toe_off - 0.5",
-                "choose the other order, or 'best'",
-            )
-        return self
-
-
-_RANGES = {"heel_end": (0.0, 0.5), "heel_off": (0.0, 0.5), "toe_off": (0.5, 1.0)}
-
-
-class LegCorridors(Value):
-    """Corridors of one leg; "same" as of both."""
-
-    _error = CorridorError
-
-    source: str = Field(default="same", description="human data, or 'same'")
-    width_sd: PositiveFloat | Same = Field(default="same", description="half width in SDs")
-    hip_width_sd: Width = Field(default="same", description="half width at the hip")
-    knee_width_sd: Width = Field(default="same", description="half width at the knee")
-    ankle_width_sd: Width = Field(default="same", description="half width at the ankle")
-
-
-class Corridors(Value):
-    """Which human data bound the joint angles (6), and how widely."""
-
-    _error = CorridorError
-
-    source: str = Field(
-        default="winter-natural",
-        description="'winter-slow', 'winter-natural', 'winter-fast', or a CSV file",
-    )
-    width_sd: PositiveFloat = Field(
-        default=1.0, description="half width of the corridors in standard deviations"
-    )
-    hip_width_sd: Width = Field(
-        default="same", description="half width at the hip, 'same', or 'off' (no corridor)"
-    )
-    knee_width_sd: Width = Field(default="same", description="half width at the knee")
-    ankle_width_sd: Width = Field(default="same", description="half width at the ankle")
-    leg_1: LegCorridors | None = Field(default=None, description="corridors of leg 1 that differ")
-    leg_2: LegCorridors | None = Field(default=None, description="corridors of leg 2 that differ")
-
-    def width(self, joint: str) -> float | None:
-        """Half width at a joint in standard deviations, None where there is no corridor."""
-        value = getattr(self, f"{joint}_width_sd")
-        if value == "off":
-            return None
-        return self.width_sd if value == "same" else float(value)
 
 
 class GaitProblem(Value):

@@ -8,9 +8,11 @@ from dataclasses import dataclass
 from ergowalk.body import Body
 from ergowalk.errors import ProblemError
 from ergowalk.gait.rhythm import PRINTED_RHYTHM
+from ergowalk.problem.corridors import Corridors, LegCorridors
 from ergowalk.problem.devices import Device, Devices, LegDevices
-from ergowalk.problem.gait_problem import Corridors, GaitProblem, LegCorridors, RhythmBounds
+from ergowalk.problem.gait_problem import GaitProblem
 from ergowalk.problem.limits import JointBounds, LegJointBounds, LegLimits, Limits
+from ergowalk.problem.rhythm import RhythmBounds
 
 DEFAULT_PRESET = "berbyuk2002"
 

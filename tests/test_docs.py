@@ -209,8 +209,8 @@ def test_the_page_on_the_gait_file_lists_its_attributes(paper_gait: xr.Dataset) 
     table = page[page.index("## Global attributes") :]
     cells = [line.split("|")[1] for line in table.splitlines() if line.startswith("| `")]
     listed = {name for cell in cells for name in re.findall(r"`(\w+)`", cell)}
-    of_each_leg = {"rhythm_leg_2", "step_lengths"}
-    assert listed == set(paper_gait.attrs) | of_each_leg
+    of_each_leg, of_designs = {"rhythm_leg_2", "step_lengths"}, {"design"}
+    assert listed == set(paper_gait.attrs) | of_each_leg | of_designs
 
 
 @pytest.mark.parametrize("page", PAGES, ids=named)

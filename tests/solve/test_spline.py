@@ -14,7 +14,7 @@ from ergowalk.audit import check_readable
 from ergowalk.comparison import compare, human_of
 from ergowalk.errors import ProblemError
 from ergowalk.gait.rhythm import PRINTED_RHYTHM, PhaseOrder
-from ergowalk.problem import preset
+from ergowalk.problem import GaitProblem, preset
 from ergowalk.solution import Progress, Solution
 from ergowalk.solving import (
     SplineOptions,
@@ -26,6 +26,8 @@ from ergowalk.solving import (
 )
 from ergowalk.solving.spline_rosenbrock import POWER
 from ergowalk.solving.stages import Effort, OrderSearch
+from ergowalk.transcription.halves import Orders
+from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.spline.semi_inverse import MEASURES
 from ergowalk.transcription.walker import Smoothing
 
@@ -221,8 +223,13 @@ def test_a_free_rhythm_is_held_and_the_status_says_so() -> None:
 
 def test_a_collocation_can_begin_with_it(climbed: Solution) -> None:
     """Less than a hundred iterations, which the human means need before the rhythm is free."""
-    search = OrderSearch(FIXED, (PhaseOrder.TOE_OFF_FIRST,), Smoothing(), Effort(), None)
-    found = collocation._begin([search], climbed)
+
+    def search(
+        problem: GaitProblem, orders: Orders, store: KernelStore | None = None
+    ) -> OrderSearch:
+        return OrderSearch(problem, orders, Smoothing(), Effort(), None, store)
+
+    found = collocation._begin(search, FIXED, climbed)
     assert found is not None
     assert found.result.minimum.converged
     assert found.result.minimum.iterations < 100

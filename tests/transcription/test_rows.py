@@ -32,9 +32,9 @@ CASES = [
 )
 def kernel(request: pytest.FixtureRequest) -> Kernel:
     build, order, i, points = request.param
-    problem = build(PROBLEM, order)
+    problem = build(PROBLEM, (order,) if build is walking_problem else order)
     store = STORE if build is walking_problem else KernelStore()
-    return store.kernel(problem.phases[i], problem, GaussScheme(points)).kernel
+    return store.kernel(problem.phases[i], GaussScheme(points)).kernel
 
 
 def somewhere(kernel: Kernel, seed: int) -> list[np.ndarray]:

@@ -112,7 +112,7 @@ def describe(
     method: str,
     status: str,
     history: list[dict[str, Any]],
-    step_lengths: tuple[float, float] = (0.0, 0.0),
+    step_lengths: tuple[float, float] | None = None,
     extra: dict[str, Any],
 ) -> xr.Dataset:
     """The dataset with the global attributes of a gait file, ``acceptable`` still 0."""
@@ -141,7 +141,7 @@ def describe(
     ).assign_attrs(_of_legs(rhythms, step_lengths))
 
 
-def _of_legs(rhythms: Sequence[Rhythm], step_lengths: tuple[float, float]) -> dict[str, str]:
+def _of_legs(rhythms: Sequence[Rhythm], step_lengths: tuple[float, float] | None) -> dict[str, str]:
     """Attributes of a gait in which both halves were solved."""
     if len(rhythms) == 1:
         return {}

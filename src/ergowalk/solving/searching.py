@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ergowalk.problem import GaitProblem
+from ergowalk.problem import Design, GaitProblem
 from ergowalk.problem.constraints import SHORTEST_PHASE
 from ergowalk.solving.candidate import Candidate
 from ergowalk.solving.easing import eased, needs_easing, without_devices
@@ -95,9 +95,14 @@ def from_mirrored(
 
 
 def _with_common_devices(problem: GaitProblem) -> GaitProblem:
-    """The problem without the devices of one leg; each leg keeps a rhythm of its own."""
+    """The problem without the devices of one leg, whose numbers no design can free then.
+
+    Each leg keeps a rhythm of its own.
+    """
     found: GaitProblem = problem.replace(
-        devices=problem.mirrored().devices, stride=problem.stride.replace(legs="each")
+        devices=problem.mirrored().devices,
+        stride=problem.stride.replace(legs="each"),
+        design=Design(),
     )
     return found
 
@@ -143,11 +148,12 @@ def _other_order(
 def _step_by_step(
     search: Search, problem: GaitProblem, best: Candidate, orders: Orders
 ) -> tuple[OrderSearch, StageResult]:
-    """Bodies set apart by one share after the other."""
+    """Bodies set apart by one share after the other; the last is the problem itself."""
     start, before = Start.twice(best.result.trajectory, problem), None
     mesh = best.result.collocation.mesh * 2
     for share in SHARES:
-        here = search(problem.replace(body=problem.body.mirrored(share)), orders)
+        nearer = {"body": problem.body.mirrored(share), "design": Design()}
+        here = search(problem.replace(**nearer) if share < 1 else problem, orders)
         result = here.stage(f"legs apart by {share:g}", mesh, start, before=before)
         if not result.minimum.converged:
             break

@@ -8,8 +8,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-
 from ergowalk.body import LegParameters
 from ergowalk.corridors import ANGLES
 from ergowalk.gait.footprints import Footprint, leading_print, trailing_print
@@ -49,7 +47,6 @@ from ergowalk.transcription.design import (
 from ergowalk.transcription.devices import LOADED_JOINTS, Fittings
 from ergowalk.transcription.edges import BAND, corridor_edges
 from ergowalk.transcription.phases import (
-    Coordinate,
     Instant,
     State,
     Terms,
@@ -57,9 +54,10 @@ from ergowalk.transcription.phases import (
     Unknown,
 )
 from ergowalk.transcription.steps import Steps, UnequalSteps
+from ergowalk.transcription.unknowns import FORCE, algebraics
 
-RATE, ACCELERATION, FORCE, METRE = 3.0, 30.0, 10.0, 0.1
-"""Typical sizes by which unknowns and rows are divided (rad/s, rad/s2, N/kg, m)."""
+METRE = 0.1
+"""Typical height [m] by which rows are divided."""
 
 
 @dataclass(frozen=True)
@@ -134,54 +132,6 @@ class Walker:
     def prints(self) -> tuple[Footprint, Footprint]:
         """Where the leading and the trailing foot stand [m]."""
         return leading_print(self.legs[0]), trailing_print(self.legs[1], self.steps.behind)
-
-    def coordinates(self, phase: Phase) -> tuple[Coordinate, ...]:
-        """Angles of this phase; a flat foot has none, a foot on its toe tip follows the ankle.
-
-        The two lines of (12) are coordinates too, of no acceleration.
-        """
-        names = ["trunk", "thigh_1", "shank_1", "thigh_2", "shank_2"]
-        if phase.legs[0] is not Contact.FLAT:
-            names.append("foot_1")
-        if phase.legs[1] is Contact.SWING:
-            names.append("foot_2")
-        angles = [Coordinate(n, rate_scale=RATE, acceleration_scale=ACCELERATION) for n in names]
-        if phase.legs[1] is Contact.TOE and self.linear_sharing:
-            # the load passes between metatarsal joint and toe tip
-            toes = -np.inf if frees_toes(self.problem) else -self.legs[1].toe_length
-            angles.append(Coordinate("pressure_shift", toes, 0.0))
-            angles.append(Coordinate("reaction_share", rate_scale=FORCE))
-        return (*angles, *self.fittings.coordinates(phase))
-
-    def controls(self, phase: Phase) -> tuple[Unknown, ...]:
-        """The walker's own moments per kg that can do work, or carry load over the toes."""
-        names = ["hip_1", "knee_1", "ankle_1", "hip_2", "knee_2"]
-        if phase.legs[0] is Contact.FOREFOOT:
-            names.append("metatarsal_1")
-        if phase.legs[1] is Contact.TOE:
-            names += ["ankle_2", "metatarsal_2"]
-        names = [n for n in names if self._own(phase, n)]
-        strength = [limits.moment_nm_per_kg for limits in self.limits]
-        bounds = {n: strength[int(n[-1]) - 1].of(n[:-2]) or np.inf for n in names}
-        return tuple(Unknown(n, -bounds[n], bounds[n]) for n in names)
-
-    def _own(self, phase: Phase, name: str) -> bool:
-        role = int(name[-1]) - 1
-        return self.fittings.own(role, name[:-2], phase.legs[role])
-
-    def algebraics(self, phase: Phase) -> tuple[Unknown, ...]:
-        """Ground reactions and moments of locks per kg; the trailing foot on its toe tip."""
-        unknowns = []
-        for i, contact in enumerate(phase.legs, start=1):
-            if contact is not Contact.SWING:
-                cap = self.limits[i - 1].vertical_reaction_body_weights
-                highest = np.inf if cap == "off" else cap * self.gravity
-                unknowns.append(Unknown(f"reaction_x_{i}", scale=FORCE))
-                unknowns.append(Unknown(f"reaction_y_{i}", 0.0, highest, FORCE))
-        if phase.legs[1] is Contact.TOE:
-            unknowns += [Unknown("foot_2"), Unknown("toes_2")]
-            unknowns += [Unknown(n, scale=RATE) for n in ("foot_2_rate", "toes_2_rate")]
-        return (*unknowns, *self.fittings.algebraics(phase))
 
     # --- the motion at an instant ---------------------------------------------------------
 
@@ -294,7 +244,7 @@ class Walker:
         There the forces are those that inverse dynamics finds for the motion, not
         extrapolations: without this they overshoot between the points of two elements.
         """
-        terms, limits = Terms(), self.algebraics(phase)
+        terms, limits = Terms(), algebraics(self, phase)
         _, trailing = self.reactions(instant)
         if phase.legs == (Contact.HEEL, Contact.TOE):
             pressure = self.prints[1].toe_tip

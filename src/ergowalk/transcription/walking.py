@@ -14,6 +14,7 @@ from ergowalk.transcription.design import flat_foot_links, frees_foot_angle, mas
 from ergowalk.transcription.device_links import device_links, fixed_moments
 from ergowalk.transcription.halves import Orders, halves_of, joined
 from ergowalk.transcription.phases import Instant, Join, Link, PhasedProblem, PhaseModel, Terms
+from ergowalk.transcription.unknowns import algebraics, controls, coordinates
 from ergowalk.transcription.walker import SHARING, Smoothing, Walker
 
 FIT_ROUGHNESS = 1e-4
@@ -60,9 +61,9 @@ def _half(walker: Walker, order: PhaseOrder) -> PhasedProblem:
             phase.name,
             phase.start,
             phase.end,
-            walker.coordinates(phase),
-            walker.controls(phase),
-            walker.algebraics(phase),
+            coordinates(walker, phase),
+            controls(walker, phase),
+            algebraics(walker, phase),
             1.0,
             inside,
             path,
@@ -103,18 +104,18 @@ def kinematic_problem(problem: GaitProblem, order: PhaseOrder) -> PhasedProblem:
             return Terms()
 
         loads = ("reaction", "lock")
-        algebraics = tuple(z for z in walker.algebraics(phase) if not z.name.startswith(loads))
+        kept = tuple(z for z in algebraics(walker, phase) if not z.name.startswith(loads))
         return PhaseModel(
             "fit_" + phase.name,
             phase.start,
             phase.end,
             tuple(
                 q
-                for q in walker.coordinates(phase)
+                for q in coordinates(walker, phase)
                 if q.name not in SHARING and not q.name.startswith("slip")
             ),
             (),
-            algebraics,
+            kept,
             1.0,
             inside,
             path,

@@ -51,11 +51,16 @@ def table(header: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
     return "\n".join(f"| {line} |" for line in cells)
 
 
+def publish(kind: str, texts: dict[str, str]) -> None:
+    """Put texts into the blocks of their names on every page that has them, and say where."""
+    for page in pages():
+        if fill(page, kind, texts):
+            print(f"wrote {page.relative_to(ROOT)}")
+
+
 def write_studies(studies: Mapping[str, Callable[[], str]], names: Iterable[str] = ()) -> None:
     """Print the named studies, or all, and put each into the pages that ask for it."""
     for name in list(names) or studies:
         text = studies[name]()
         print(f"{name}\n{text}", flush=True)
-        for page in pages():
-            if fill(page, "study", {name: text}):
-                print(f"wrote {page.relative_to(ROOT)}")
+        publish("study", {name: text})

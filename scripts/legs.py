@@ -14,7 +14,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import ergowalk
-from blocks import ROOT, fill, pages, table
+from blocks import ROOT, publish, table
 from ergowalk.plots import style
 from ergowalk.problem import GaitProblem
 from ergowalk.problem.legs import Stride
@@ -140,9 +140,7 @@ def main(arguments: list[str]) -> int:
     blocks = {"legs": energies(found), "legs, steps": steps(found)}
     with style.styled():
         draw(found, ROOT / "docs" / "assets" / "legs.png")
-    for page in pages():
-        if fill(page, "study", blocks):
-            print(f"wrote {page.name}")
+    publish("study", blocks)
     return 0
 
 

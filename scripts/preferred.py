@@ -17,7 +17,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import ergowalk
-from blocks import ROOT, fill, pages, table
+from blocks import ROOT, publish, table
 from ergowalk.errors import InputError
 from ergowalk.plots import style
 from ergowalk.problem import Corridors, GaitProblem, Objective
@@ -131,9 +131,7 @@ def main(arguments: list[str]) -> int:
         draw(everything, ROOT / "docs" / "assets" / "preferred.png")
     text = compared(everything)
     print(text)
-    for page in pages():
-        if fill(page, "study", {"preferred": text}):
-            print(f"wrote {page.name}")
+    publish("study", {"preferred": text})
     return 0
 
 

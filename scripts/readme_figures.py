@@ -18,7 +18,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from blocks import ROOT, blocks, fenced, fill, pages
+from blocks import ROOT, blocks, fenced, pages, publish
 
 ASSETS = ROOT / "docs" / "assets"
 
@@ -78,9 +78,7 @@ def main() -> None:
             texts[command] = fenced(text)
         for source, target in PICTURES.items():
             copy_picture(folder / source, ASSETS / target)
-    for page in pages():
-        if fill(page, "output", texts):
-            print(f"wrote {page.relative_to(ROOT)}")
+    publish("output", texts)
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ from collections.abc import Callable
 from functools import cached_property
 
 import ergowalk
-from blocks import ROOT, fenced, fill, pages, table
+from blocks import ROOT, fenced, publish, table
 from ergowalk.audit import residuals
 from ergowalk.audit.report import Residual
 from ergowalk.cli.parser import build_parser
@@ -149,9 +149,7 @@ def _plain(docstring: str | None) -> str:
 
 def main() -> None:
     texts = generated()
-    for page in pages():
-        if fill(page, "generated", texts):
-            print(f"wrote {page.name}")
+    publish("generated", texts)
     SCHEMA.write_text(schema(), "utf-8")
 
 

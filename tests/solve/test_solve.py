@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -24,6 +24,9 @@ from ergowalk.solution import Progress, Solution
 from ergowalk.solution.progress import Report
 from ergowalk.solvers.ipopt import Ipopt
 from ergowalk.solving import SplineOptions, stages, verb
+from ergowalk.solving.answer import describe, judged, rhythms_of
+from ergowalk.solving.candidate import Candidate, failed
+from ergowalk.solving.memory import recall
 from ergowalk.solving.stages import with_times
 from ergowalk.transcription import halves, motion
 from ergowalk.transcription.layout import Mesh
@@ -287,3 +290,35 @@ def test_times_can_be_held() -> None:
     held = with_times(phased, times)
     assert held.times == {name: (t, t) for name, t in times.items()}
     assert held.phases is phased.phases
+
+
+@pytest.mark.parametrize("heel_off", [0.02, 0.51])
+def test_phases_that_overlap_in_a_failed_search_do_not_hide_its_answer(
+    paper_gait_file: Path, heel_off: float
+) -> None:
+    """Rows of the rhythm may be violated where a solver stops; time still goes forward."""
+    search, found = recall(Solution.load(paper_gait_file))
+    x, layout = found.minimum.x.copy(), found.collocation.layout
+    index = layout.times["heel_off"]
+    x[index] = heel_off * search.problem.stride_time_s / layout.scale[index]
+    minimum = replace(found.minimum, x=x, converged=False, message="ran out of iterations")
+    result = replace(found, trajectory=found.collocation.unpack(x), minimum=minimum)
+    gait = failed(Candidate(search, result), [], "on 86 elements")
+    time = gait.dataset["time"].to_numpy()
+    assert bool((np.diff(time) >= 0).all())
+    answer = judged(
+        describe(
+            gait.dataset,
+            search.problem,
+            rhythms_of(search.halves, result.trajectory, search.problem.stride_time_s),
+            energy=1.0,
+            method="collocation",
+            status=gait.status,
+            history=gait.history,
+            extra={},
+        ),
+        gait.settled,
+        None,
+    )
+    assert not answer.acceptable
+    assert answer.status.startswith("not converged on 86 elements: ran out of iterations")

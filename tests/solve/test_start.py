@@ -51,6 +51,29 @@ def guessed(problem: GaitProblem, gait: Solution) -> Guess:
     return StartingGait(gait).guess(problem, halves(problem, gait))
 
 
+@pytest.mark.parametrize(
+    ("length", "time", "near"),
+    [(1.0, 1.0, True), (1.019, 0.981, True), (1.021, 1.0, False), (1.0, 0.979, False)],
+)
+def test_a_gait_with_other_steps_is_continued_from_further_inside_the_bounds(
+    gait: Solution, length: float, time: float, near: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem = FIXED.replace(
+        step_length_m=FIXED.step_length_m * length, stride_time_s=FIXED.stride_time_s * time
+    )
+    barriers: list[float] = []
+
+    def stop(search: OrderSearch, before: object, begin: object, barrier: float) -> None:
+        barriers.append(barrier)
+        raise InterruptedError
+
+    monkeypatch.setattr(OrderSearch, "continued", stop)
+    with pytest.raises(InterruptedError):
+        begun(problem, gait)
+    assert barriers == [collocation.NEAR if near else collocation.FAR]
+    assert collocation.NEAR < collocation.FAR
+
+
 def test_the_side_inside_the_phase_is_taken_where_an_instant_stands_twice() -> None:
     time = np.array([0.0, 0.1, 0.2, 0.2, 0.3, 0.4, 0.4, 0.5])
     assert time[within(time, 0.2, 0.4, 1e-9)].tolist() == [0.2, 0.3, 0.4]

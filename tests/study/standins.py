@@ -69,10 +69,19 @@ def walk(task: dict[str, Any]) -> dict[str, Any]:
     gate = folder.with_suffix(".gate")
     while gate.exists():
         time.sleep(0.02)
-    return searched(task, _walk)
+    return searched(task, _walk if task["starts"] else _looked)
+
+
+def _looked(problem: GaitProblem, **choices: Any) -> Solution:
+    """A second look, which finds what the first has missed."""
+    return gait(problem)
 
 
 def _walk(problem: GaitProblem, **choices: Any) -> Solution:
+    if problem.name == "rough" and round(problem.step_length_m, 3) in MISSED:
+        dataset = gait(problem).dataset
+        dear = MISSED[round(problem.step_length_m, 3)] * dataset.attrs["energy_per_metre"]
+        return Solution(dataset.assign_attrs(energy_per_metre=dear))
     if problem.name == "slow":
         time.sleep(SLOW_S)
     what = TROUBLES.get(round(problem.step_length_m, 3)) if problem.name == "troubled" else ""
@@ -88,6 +97,9 @@ def _walk(problem: GaitProblem, **choices: Any) -> Solution:
 
 
 SLOW_S = 0.5
+
+MISSED = {0.64: 1.05, 0.7: 1.02}
+"""What E is at first of some step lengths, over the least."""
 
 TROUBLES = {0.51: "hang", 0.52: "memory", 0.53: "crash", 0.54: "error", 0.55: "rejected"}
 

@@ -114,6 +114,39 @@ def test_what_fails_is_recorded_with_its_reason_and_the_rest_goes_on(
     assert index(folder) == before
 
 
+def test_second_looks_mend_the_map_and_are_not_done_twice(here: str, tmp_path: Path) -> None:
+    lengths = [0.6, 0.62, 0.64, 0.66, 0.68, 0.7, 0.72, 0.74, 0.76]
+    definition = small("mended", "rough", grid={"step_length_m": lengths})
+    plain = run(definition, tmp_path / "plain", here)["energy_per_metre"]
+    for length, dearer in standins.MISSED.items():
+        least = standins.energy(length, definition.base.stride_time_s)
+        assert plain.sel(step_length_m=length) == pytest.approx(dearer * least)
+
+    looking = definition.replace(solve={"probes": 1, "second_looks": 5})
+    folder = tmp_path / "out"
+    told: list[Tally] = []
+    found = run(looking, folder, here, progress=told.append)
+    right = [standins.energy(length, looking.base.stride_time_s) for length in lengths]
+    assert found["energy_per_metre"].to_numpy() == pytest.approx(right)
+    assert bool((found["searches"].sel(step_length_m=list(standins.MISSED)) > 1).all())
+    words = list(dict.fromkeys(tally.words for tally in told))
+    assert words[:3] == ["cases", "probes", "looks of round 1"]
+    done = begun(folder)
+    assert len(done) == len(set(done)) == int(found["searches"].sum())
+
+    before = index(folder)
+    names = {row["case"] for row in before.values()}
+    assert len(before) == len(done)
+    assert len(names) == len(lengths)
+    looks = sorted(key for key, row in before.items() if key != row["case"])
+    Store(folder).record_path(looks[0]).unlink()
+    Store(folder).record_path(looks[-1]).unlink()
+    again = run(looking, folder, here)
+    assert sorted(begun(folder)[len(done) :]) == sorted({looks[0], looks[-1]})
+    assert index(folder) == before
+    assert again["key"].to_numpy().tolist() == found["key"].to_numpy().tolist()
+
+
 def test_two_sweeps_in_one_folder_share_their_cases(here: str, tmp_path: Path) -> None:
     folder, failed = tmp_path / "out", []
     wider = small("wider", grid={"step_length_m": [0.7, 0.8, 0.9], "stride_time_s": [1.0, 1.2]})

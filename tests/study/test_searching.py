@@ -65,6 +65,8 @@ def found(tmp_path: Path, monkeypatch: Any, solver: Solver, begun: bool, starts:
         ({"starts": (48.0, True)}, True, 3, [NEIGHBOUR, STARTS], "2 starts"),
         ({"starts": (48.0, False)}, True, 3, [NEIGHBOUR, STARTS], NEIGHBOUR),
         ({}, False, 3, [STARTS], "3 starts"),
+        ({"neighbour": (40.0, False)}, True, 0, [NEIGHBOUR], NEIGHBOUR),
+        ({}, False, 0, [MEANS], MEANS),
     ],
 )  # fmt: skip
 def test_the_best_accepted_gait_of_all_that_was_asked_for_is_kept(

@@ -143,15 +143,16 @@ def built(
 
 
 @LAW
-@given(meshes_with_errors)
+@given(meshes_with_errors, st.sampled_from([0.6, 1.0]))
 def test_elements_are_cut_by_their_error_and_stay_nested(
-    parts: list[list[tuple[float, float]]],
+    parts: list[list[tuple[float, float]]], above: float
 ) -> None:
     mesh, errors = built(parts)
-    for old, new, error in zip(mesh, cut(mesh, errors), errors, strict=True):
+    for old, new, error in zip(mesh, cut(mesh, errors, above), errors, strict=True):
         assert set(old) <= set(new)
         pieces = np.diff(np.searchsorted(new, old))
-        np.testing.assert_array_equal(pieces, np.where(error > 6, 3, np.where(error > 1, 2, 1)))
+        expected = np.where(error > 6, 3, np.where(error > above, 2, 1))
+        np.testing.assert_array_equal(pieces, expected)
         sizes = np.split(np.diff(new), np.cumsum(pieces)[:-1])
         for size, whole in zip(sizes, np.diff(old), strict=True):
             np.testing.assert_allclose(size, whole / len(size), rtol=1e-9)

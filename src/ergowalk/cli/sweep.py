@@ -76,7 +76,7 @@ class SweepProgress:
 
 def tally_text(tally: Tally) -> str:
     """One line about where a sweep stands."""
-    parts = [f"{tally.done} of {tally.total} cases", f"{tally.accepted} accepted"]
+    parts = [f"{tally.done} of {tally.total} {tally.words}", f"{tally.accepted} accepted"]
     if tally.failed:
         parts.append(f"{tally.failed} failed")
     parts.append(f"{tally.running} running")

@@ -39,6 +39,8 @@ def dense_gait(problem: GaitProblem, halves: Sequence[Half], trajectory: Traject
         edges[0] = own[-1].time[-1] if own else 0.0  # to the last digit
         if phase is half.phases[-1]:
             edges[-1] = ends[which]
+        # phases of a search that did not converge may overlap
+        edges = np.minimum(np.maximum.accumulate(edges), ends[which])
         time, samples = [], []
         for k, width in enumerate(np.diff(edges)):
             count = max(SAMPLES, int(np.ceil(width / longest)) + 1)

@@ -7,9 +7,13 @@ from typing import Any
 
 from ergowalk.solution import Solution
 
-NEIGHBOUR = 0.05
+NEIGHBOUR = 0.15
 """A check holds for gaits on the same mesh whose E differs by no more than this share from that of
-the gait that was checked."""
+the gait that was checked.
+
+Of fifty gaits of one map, each with a check of its own (0.03 to 0.39 % of E), two whose E differs
+by less than 5 % have checks 0.07 % of E apart in the median and at most 0.25 %; by less than 15 %,
+0.08 and at most 0.27 %."""
 
 
 @dataclass(frozen=True)

@@ -24,8 +24,15 @@ from ergowalk.transcription.kernel import KernelStore
 from ergowalk.transcription.perturbation import Perturbation
 from ergowalk.transcription.walker import Smoothing
 
+NEAR = 1e-6
+"""Barrier from which a gait is continued."""
+
 APART = 1e-5
 """Barrier from which legs that were equal are set apart."""
+
+FAR = 1e-5
+"""Barrier from which a gait with other steps is continued: on their bounds the curves would only
+creep along."""
 
 FAINT = Smoothing(moment_rate=1e-7, metatarsal_rate=1e-7)
 """Smoothing of a problem without moment-rate bound: too little to hide that it is impulsive."""
@@ -91,7 +98,8 @@ def _begin(search: Search, problem: GaitProblem, start: Solution) -> Candidate |
     start_at = Start(begun.guess(problem, here.halves), times, begun.shared(problem))
     before = recall_for(start, here, POINTS)
     if before is not None:
-        result = here.continued(before, start_at)
+        barrier = NEAR if begun.near(problem) else FAR
+        result = here.continued(before, start_at, barrier)
         if result.minimum.converged:
             return Candidate(here, result, continued=True)
     before = recall_twice(start, here, POINTS) if problem.full_stride else None

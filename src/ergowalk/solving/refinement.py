@@ -13,6 +13,10 @@ from ergowalk.transcription.mesh import cut, finer
 ROUNDS, MOST_ELEMENTS = 6, 250
 """How often elements are cut whose errors are too large, and how many there may be."""
 
+NEARLY = 0.6
+"""Error from which elements of a neighbour's mesh are cut when one of them has to be: so the mesh
+is cut once, and the next neighbour finds it ready."""
+
 MESH_TOLERANCE = 0.005
 """E may differ by this share between the reported and the next finer mesh."""
 
@@ -28,12 +32,13 @@ def refine(coarse: Candidate, check_before: MeshCheck | None) -> Gait:
     if not coarse.result.minimum.converged:
         return failed(coarse, history, "on the coarse mesh")
     residuals = search.residuals(coarse.result)
+    above = NEARLY if coarse.continued else 1.0
     for _ in range(ROUNDS):
         if residuals.largest <= 1.0 or final.result.elements > MOST_ELEMENTS:
             break
         energy = energy_per_metre(residuals.work, search.distance)
         history.append(record(final.result, energy))
-        mesh = cut(final.result.collocation.mesh, residuals.errors)
+        mesh = cut(final.result.collocation.mesh, residuals.errors, above)
         final = Candidate(search, search.refined(final.result, mesh, residuals.largest))
         if not final.result.minimum.converged:
             return failed(final, history, f"on {final.result.elements} elements")

@@ -173,10 +173,11 @@ class OrderSearch:
         mesh = self._mesh(start.times, COARSE)
         return self._run("from a gait", self.phased, mesh, start, _warm(1e-4, 1e-3))
 
-    def continued(self, before: StageResult, begin: Start, barrier: float = 1e-6) -> StageResult:
+    def continued(self, before: StageResult, begin: Start, barrier: float) -> StageResult:
         """From the point and the multipliers of a neighbour's gait, on its mesh.
 
-        ``before`` stands in the unknowns of this search; ``begin`` says what else is known.
+        ``before`` stands in the unknowns of this search; ``begin`` says what else is known, and
+        ``barrier`` how far from the bounds it starts.
         """
         start = replace(begin, guess=before.trajectory.as_guess())
         solver = _warm(1e-6, barrier)

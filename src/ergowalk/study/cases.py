@@ -15,6 +15,9 @@ from ergowalk.errors import InputError, SweepError
 from ergowalk.problem import GaitProblem
 from ergowalk.study.definition import Sweep
 
+Record = dict[str, Any]
+"""What is kept of a search of a case: verdict, numbers, effort."""
+
 KEY_LENGTH = 24
 """Hexadecimal digits of a key: 96 bits."""
 

@@ -37,6 +37,15 @@ class SearchOptions(Value):
     seed: Annotated[int, Field(ge=0, strict=True)] = Field(
         default=0, description="seed of the disturbances"
     )
+    probes: Annotated[int, Field(ge=0, le=MOST_CASES, strict=True)] = Field(
+        default=0,
+        description="cases, spread over the sweep, that are searched from the human means too",
+    )
+    second_looks: Annotated[int, Field(ge=0, le=100, strict=True)] = Field(
+        default=0,
+        description="rounds in which cases are searched again from a neighbour whose gait promises "
+        "a cheaper one; the cheapest accepted gait stands for the case",
+    )
     time_limit_s: Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)] = Field(
         default=1800.0, description="time after which a case is given up, in s"
     )

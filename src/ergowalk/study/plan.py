@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ergowalk.study.cases import Case
 from ergowalk.study.definition import Sweep
+from ergowalk.study.looks import Look
 
 Array = NDArray[np.float64]
 
@@ -28,10 +29,17 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class Step:
-    """A case and the one that it begins at; None begins at the start of the sweep."""
+    """A case and the one that it begins at, or a second look at it; else it begins where the sweep
+    does."""
 
     case: Case
     neighbour: Case | None
+    look: Look | None = None
+
+    @property
+    def key(self) -> str:
+        """Name of the result."""
+        return self.look.key if self.look else self.case.key
 
 
 def planned(sweep: Sweep, cases: Sequence[Case]) -> tuple[Step, ...]:
@@ -56,6 +64,13 @@ def planned(sweep: Sweep, cases: Sequence[Case]) -> tuple[Step, ...]:
         nearest = before[int(np.flatnonzero(apart <= apart.min() + _ROUNDING)[0])]
         steps.append(Step(solvable[i], solvable[nearest] if sweep.solve.continuation else None))
     return tuple(steps)
+
+
+def places_of(sweep: Sweep, cases: Sequence[Case]) -> list[list[float] | None]:
+    """Where each case is, in steps of a grid; None of one without a problem."""
+    solvable = [case for case in cases if case.problem is not None]
+    rows = iter(_places(sweep, solvable)[0].round(9).tolist() if solvable else ())
+    return [None if case.problem is None else next(rows) for case in cases]
 
 
 def _distances(places: Array, point: Array) -> Array:

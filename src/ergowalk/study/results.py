@@ -11,9 +11,11 @@ import xarray as xr
 
 from ergowalk.corridors import SIGNALS
 from ergowalk.quantities import JOINTS
+from ergowalk.study.cases import Record
+from ergowalk.study.looks import Looks
 from ergowalk.study.measures import AXES, INSTANTS
 from ergowalk.study.plan import is_number
-from ergowalk.study.store import Record, Store
+from ergowalk.study.store import Store
 
 _NUMBERS = {
     "energy_per_metre": ("J/m", "energy per metre, E of (10)"),
@@ -71,7 +73,8 @@ def collect(folder: str | Path, name: str | None = None) -> xr.Dataset:
     xarray.Dataset
         Of a grid over its fields as dimensions, of any other sweep over ``case`` with the fields
         as coordinates; NaN, or "" where there is no text, of cases without a gait. ``acceptable``
-        is the verdict of solver and audit.
+        is the verdict of solver and audit. Of a case that was looked at again it is all of the
+        best search, effort too; ``searches`` says how many there were.
 
     Raises
     ------
@@ -81,8 +84,8 @@ def collect(folder: str | Path, name: str | None = None) -> xr.Dataset:
     store = Store(Path(folder))
     definition = store.definition(name)
     cases = definition["cases"]
-    known = store.done([case["key"] for case in cases])
-    records = [known.get(c["key"], {"key": c["key"], "status": "missing"}) for c in cases]
+    looks = Looks(definition, store.done).finished()
+    records = [looks.best.get(c["key"], {"key": c["key"], "status": "missing"}) for c in cases]
     dims, shape, coords = _frame(definition)
 
     def shaped(values: list[Any], more: tuple[int, ...] = ()) -> Any:
@@ -101,6 +104,9 @@ def collect(folder: str | Path, name: str | None = None) -> xr.Dataset:
     for word, words in _WORDS.items():
         texts = [str(record.get(word) or "") for record in records]
         data[word] = (dims, shaped(texts), {"long_name": words})
+    searches = [looks.searches.get(case["key"], 0) for case in cases]
+    words = "searches of the case, second looks among them"
+    data["searches"] = (dims, shaped(searches), {"long_name": words})
     accepted = [int(record["status"] == "accepted") for record in records]
     data["acceptable"] = (dims, shaped(accepted), {"long_name": "accepted by solver and audit"})
     about = {

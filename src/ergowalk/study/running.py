@@ -8,16 +8,17 @@ import math
 import queue
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ergowalk.errors import InputError, SweepError
-from ergowalk.study.cases import DEFAULT_SOLVER, Case, cases_of
+from ergowalk.study.cases import DEFAULT_SOLVER, Case, Record, cases_of
 from ergowalk.study.cluster import cluster_client, dashboard, greeted, needed, slots
 from ergowalk.study.definition import SearchOptions, Sweep
+from ergowalk.study.looks import Looks
 from ergowalk.study.plan import Step, planned
-from ergowalk.study.store import Record, Store
+from ergowalk.study.store import Store
 from ergowalk.study.tally import Tally
 from ergowalk.study.worker import run_case
 
@@ -53,7 +54,8 @@ def sweep(
     """Solve all cases of a sweep that the folder does not have yet, and collect them.
 
     Each case begins at the gait of its neighbour in a tree that is fixed before the work, so the
-    result does not depend on the workers. A case that fails, takes too long, takes too much memory
+    result does not depend on the workers. Second looks follow where the sweep asks for them: see
+    :mod:`ergowalk.study.looks`. A case that fails, takes too long, takes too much memory
     or crashes is recorded with its reason; the cases that should have begun at it begin at the
     last accepted gait on the way to it.
 
@@ -97,15 +99,33 @@ def sweep(
             store.write_record(_refused(case))
     again = FAILED if retry else ()
     first = store.keep_start(definition.start)
-    run = _Run(store, planned(definition, cases), definition.solve, first, again, solver, progress)
+    options = definition.solve
     try:
-        if run.missing:
-            with cluster_client(workers, scheduler, len(run.missing)) as client:
-                greeted(client, store.folder, f"sweeps/{name}.json")
-                run.on(client)
+        with contextlib.ExitStack() as stack:
+            client = None
+            for words, steps in _parts(definition, cases, store, name):
+                run = _Run(store, steps, words, options, first, again, solver, progress)
+                if run.missing and client is None:
+                    looks = options.probes or options.second_looks
+                    most = len(steps) if looks else len(run.missing)
+                    client = stack.enter_context(cluster_client(workers, scheduler, most))
+                    greeted(client, store.folder, f"sweeps/{name}.json")
+                if run.missing:
+                    run.on(client)
     finally:
         store.write_index()
     return collect(folder, name)
+
+
+def _parts(
+    definition: Sweep, cases: Sequence[Case], store: Store, name: str
+) -> Iterator[tuple[str, tuple[Step, ...]]]:
+    """The cases, then round by round the second looks at them, with what to call them."""
+    yield "cases", planned(definition, cases)
+    known = {case.key: case for case in cases}
+    for number, looks in enumerate(Looks(store.definition(name), store.done).each_round()):
+        words = f"looks of round {number}" if number else "probes"
+        yield words, tuple(Step(known[look.case], None, look) for look in looks)
 
 
 def _check(definition: Sweep, workers: int | None, scheduler: str | None) -> None:
@@ -121,12 +141,13 @@ def _check(definition: Sweep, workers: int | None, scheduler: str | None) -> Non
 
 
 class _Run:
-    """One call of :func:`sweep`: what is missing, under way and done."""
+    """The cases of a sweep, or a round of second looks: what is missing, under way and done."""
 
     def __init__(
         self,
         store: Store,
         steps: tuple[Step, ...],
+        words: str,
         options: SearchOptions,
         start: Path | None,
         retried: tuple[str, ...],
@@ -134,8 +155,8 @@ class _Run:
         progress: Watch | None,
     ) -> None:
         self.store, self.options, self.start, self.retried = store, options, start, retried
-        self.solver, self.progress = solver, progress
-        self.steps = {step.case.key: step for step in steps}
+        self.solver, self.progress, self.words = solver, progress, words
+        self.steps = {step.key: step for step in steps}
         self.keys = list(self.steps)
         self.place = {key: i for i, key in enumerate(self.keys)}
         known = store.done(self.steps)
@@ -159,6 +180,7 @@ class _Run:
 
     def on(self, client: Any) -> None:
         """Let the missing cases run on a cluster."""
+        self.store.make_room(self.missing)
         self.began = self.indexed = time.monotonic()
         try:
             while self.ready or self.flying:
@@ -224,6 +246,7 @@ class _Run:
         return {
             "key": key,
             "status": "crashed",
+            "case": case.key,
             "values": case.values,
             "begun_at": self._begin_at(key) or "",
             "gait": "",
@@ -231,12 +254,13 @@ class _Run:
         }
 
     def _ticket(self, key: str) -> dict[str, Any]:
-        case, options = self.steps[key].case, self.options
+        case, look, options = self.steps[key].case, self.steps[key].look, self.options
         before = self._begin_at(key)
-        start = self.store.gait(before) if before else self.start
+        start = self.store.gait(before) if before else None if look else self.start
         return {
             "folder": str(self.store.folder),
             "key": key,
+            "case": case.key,
             "values": case.values,
             "begun_at": before or "",
             "solver": self.solver,
@@ -245,7 +269,7 @@ class _Run:
                 "problem": self.store.problem_text(case),
                 "gait": str(self.store.gait(key)),
                 "start": None if start is None else str(start),
-                "starts": options.starts,
+                "starts": 0 if look else options.starts,
                 "seed": options.seed,
                 "time_limit_s": options.time_limit_s,
                 "memory_limit_mb": options.memory_limit_mb,
@@ -255,6 +279,8 @@ class _Run:
     def _begin_at(self, key: str) -> str | None:
         """The nearest case with an accepted gait on the way from a case to the first one."""
         step: Step | None = self.steps[key]
+        if step is not None and step.look is not None:
+            return step.look.start or None
         while step is not None and step.neighbour is not None:
             step = self.steps[step.neighbour.key]
             if self.done[step.case.key] == "accepted":
@@ -277,6 +303,7 @@ class _Run:
                 workers=self.threads,
                 dashboard=dashboard(client),
                 last=self.last,
+                words=self.words,
             )
         )
 
@@ -285,6 +312,7 @@ def _refused(case: Case) -> Record:
     return {
         "key": case.key,
         "status": "refused",
+        "case": case.key,
         "values": case.values,
         "begun_at": "",
         "gait": "",

@@ -35,7 +35,7 @@ def searched(task: dict[str, Any], solver: Solver) -> dict[str, Any]:
     """Find, measure and store the gait of a case; its part of the record.
 
     ``task`` has ``problem`` (TOML), ``gait`` (where the answer goes), ``start`` (a gait file or
-    None), ``starts`` and ``seed``.
+    None), ``starts`` (0: one search, whatever comes of it) and ``seed``.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def _tried(
     if starts > 1:
         # in one process more: it is the cases that share the processors
         yield f"{starts} starts", solver(problem, starts=starts, seed=seed, workers=1)
-    elif not cold and (starts == 1 or not content):
+    elif not cold and starts >= 0 and (starts == 1 or not content):
         yield "human means", solver(problem)
 
 

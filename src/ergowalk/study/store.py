@@ -21,10 +21,10 @@ from pathlib import Path
 from typing import Any
 
 from ergowalk.errors import OutputError, SweepError
-from ergowalk.study.cases import Case, table_of
+from ergowalk.study.cases import Case, Record, table_of
 from ergowalk.study.definition import Sweep
 from ergowalk.study.people import leg_length
-from ergowalk.study.plan import is_number
+from ergowalk.study.plan import is_number, places_of
 
 INDEX = "index.parquet"
 
@@ -33,8 +33,6 @@ EFFORT = ("cpu_s", "wall_s", "peak_memory_mb", "worker", "finished")
 
 STALE_S = 3600.0
 """Age at which a draft that nobody renamed is swept away."""
-
-Record = dict[str, Any]
 
 
 @dataclass
@@ -105,15 +103,30 @@ class Store:
         text = json.dumps(definition, indent=1).encode()
         name = f"{sweep.name}-{hashlib.sha256(text).hexdigest()[:8]}"
         try:
-            for folder in ("cases", "sweeps", *(f"cases/{case.key[:2]}" for case in cases)):
+            for folder in ("cases", "sweeps"):
                 (self.folder / folder).mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise _unwritable(self.folder, error) from None
+        self.make_room(case.key for case in cases)
         for case in cases:
             self._copy_table(case)
         write_whole(self.folder / "sweeps" / f"{name}.json", text)
         self._clear_drafts()
         return name
+
+    def make_room(self, keys: Iterable[str]) -> None:
+        """Make the folders of results.
+
+        Raises
+        ------
+        OutputError
+            If that is not possible.
+        """
+        try:
+            for start in sorted({key[:2] for key in keys}):
+                (self.folder / "cases" / start).mkdir(exist_ok=True)
+        except OSError as error:
+            raise _unwritable(self.folder, error) from None
 
     def keep_start(self, path: Path | None) -> Path | None:
         """A copy of the gait with which a sweep begins, where all workers see it.
@@ -279,7 +292,12 @@ def _definition(sweep: Sweep, cases: Sequence[Case]) -> dict[str, Any]:
         "fields": list(sweep.fields),
         "leg_length_m": leg_length(sweep.base.body),
         "grid": grid,
-        "cases": [{"key": c.key, "values": c.values, "refused": c.refused} for c in cases],
+        "probes": sweep.solve.probes,
+        "second_looks": sweep.solve.second_looks,
+        "cases": [
+            {"key": c.key, "values": c.values, "refused": c.refused, "place": place}
+            for c, place in zip(cases, places_of(sweep, cases), strict=True)
+        ],
     }
 
 

@@ -23,6 +23,8 @@ class Tally:
         Address of Dask's own view of the cluster.
     last : str
         Key of the last case that ended, if one has, and its status.
+    words : str
+        What is counted: cases, or second looks at them.
     """
 
     total: int
@@ -35,6 +37,7 @@ class Tally:
     workers: int
     dashboard: str
     last: str = ""
+    words: str = "cases"
 
     @property
     def per_minute(self) -> float:

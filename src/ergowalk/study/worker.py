@@ -17,7 +17,8 @@ from typing import Any
 
 from ergowalk import __version__
 from ergowalk.errors import OutputError, SweepError
-from ergowalk.study.store import Record, Store
+from ergowalk.study.cases import Record
+from ergowalk.study.store import Store
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
 """What tells numerical libraries to keep to one thread."""
@@ -39,8 +40,9 @@ def greet(folder: str, mark: str) -> dict[str, Any]:
 def run_case(ticket: dict[str, Any]) -> Record:
     """Solve a case that is not done yet, and write its record.
 
-    ``ticket`` has plain values only: ``folder``, ``key``, ``values``, ``solver``, ``retry``, and
-    the ``task`` of :func:`ergowalk.study.searching.searched` with its limits.
+    ``ticket`` has plain values only: ``folder``, ``key``, ``case``, ``values``, ``begun_at``,
+    ``solver``, ``retry``, and the ``task`` of :func:`ergowalk.study.searching.searched` with its
+    limits.
 
     Raises
     ------
@@ -70,6 +72,7 @@ def run_case(ticket: dict[str, Any]) -> Record:
     record = {
         "key": key,
         "status": outcome.pop("status"),
+        "case": ticket["case"],
         "values": ticket["values"],
         "begun_at": ticket["begun_at"],
         "gait": f"cases/{key[:2]}/{key}.nc" if gait else "",

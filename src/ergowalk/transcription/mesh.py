@@ -72,11 +72,11 @@ THRICE = 6.0
 """Error, as a multiple of what is allowed, from which an element is cut in three."""
 
 
-def cut(mesh: Mesh, errors: Sequence[Array]) -> Mesh:
-    """The mesh with every element cut in two whose error is above 1, in three above 6.
+def cut(mesh: Mesh, errors: Sequence[Array], above: float = 1.0) -> Mesh:
+    """The mesh with every element cut in two whose error is ``above`` 1, in three above 6.
 
     The elements stay nested: on the new mesh the old curves are the same curves, and the solver
-    starts next to the solution.
+    starts next to the solution. Below 1 a threshold spares rounds that cut an element or two.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def cut(mesh: Mesh, errors: Sequence[Array]) -> Mesh:
         :func:`ergowalk.transcription.residuals.mesh_residuals`.
     """
     return tuple(
-        _divided(edges, 1 + (error > 1.0).astype(int) + (error > THRICE).astype(int))
+        _divided(edges, 1 + (error > above).astype(int) + (error > THRICE).astype(int))
         for edges, error in zip(mesh, errors, strict=True)
     )
 

@@ -24,8 +24,8 @@ from ergowalk.study.cases import KEY_LENGTH, Record
 
 Array = NDArray[np.float64]
 
-GAIN = 0.005
-"""Share of E that a neighbour must promise: what a finer mesh may change in a gait."""
+GAIN = 0.01
+"""Share of E that a neighbour must promise: twice what a finer mesh may change in a gait."""
 
 ASIDE = 1.5
 """Distance up to which cases are neighbours, in steps of the grid: diagonals are."""

@@ -37,7 +37,8 @@ def stored(folder: Path, lost: Any = (), **given: Any) -> xr.Dataset:
     for case in cases:
         assert case.problem is not None
         x, t = case.problem.step_length_m, case.problem.stride_time_s
-        record: dict[str, Any] = {"key": case.key, "values": case.values, "status": "crashed"}
+        record: dict[str, Any] = {"key": case.key, "case": case.key, "values": case.values}
+        record |= {"status": "crashed", "begun_at": "", "gait": ""}
         if (x, t) not in lost:
             record |= {"status": "accepted", "energy_per_metre": energy(x, t)}
         store.write_record(record)

@@ -51,6 +51,7 @@ class Map:
             "gait": "x.nc",
             "energy_per_metre": self.energy(cell, cheap),
             "cheap": cheap,
+            "cpu_s": 2.0,
         }
 
     def known(self, keys: Iterable[str]) -> dict[str, dict[str, Any]]:
@@ -82,6 +83,7 @@ def test_a_cheaper_branch_that_a_probe_finds_spreads_over_the_map() -> None:
             best = looks.best[there.key(cell)]["energy_per_metre"]
             assert best == there.energy(cell, cheap=True)
     assert sum(looks.searches.values()) == len(there.records)
+    assert sum(looks.cpu_s.values()) == 2.0 * len(there.records)
 
 
 def test_the_rounds_end_where_they_are_told_to() -> None:

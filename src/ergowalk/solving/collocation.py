@@ -25,7 +25,7 @@ from ergowalk.transcription.perturbation import Perturbation
 from ergowalk.transcription.walker import Smoothing
 
 NEAR = 1e-6
-"""Barrier from which a gait is continued."""
+"""Barrier from which a gait with almost the same steps is continued."""
 
 APART = 1e-5
 """Barrier from which legs that were equal are set apart."""
@@ -98,7 +98,7 @@ def _begin(search: Search, problem: GaitProblem, start: Solution) -> Candidate |
     start_at = Start(begun.guess(problem, here.halves), times, begun.shared(problem))
     before = recall_for(start, here, POINTS)
     if before is not None:
-        barrier = NEAR if begun.near(problem) else FAR
+        barrier = NEAR if begun.has_steps_of(problem) else FAR
         result = here.continued(before, start_at, barrier)
         if result.minimum.converged:
             return Candidate(here, result, continued=True)

@@ -23,8 +23,8 @@ from ergowalk.transcription.walker import SHARING, Walker
 
 Array = NDArray[np.float64]
 
-NEAR = 0.02
-"""Share by which step length and stride time of a neighbour may differ."""
+SAME_STEPS = 0.02
+"""Share by which step length and stride time may differ where steps are almost the same."""
 
 SAME_INSTANT = 1e-9
 """Instants of a record closer than this part of the stride time are one, seen from both sides."""
@@ -46,14 +46,14 @@ class StartingGait:
         """Its T [s]."""
         return float(self.gait.dataset.attrs["stride_time"])
 
-    def near(self, problem: GaitProblem) -> bool:
+    def has_steps_of(self, problem: GaitProblem) -> bool:
         """Whether the steps of a problem are almost those of this gait."""
         own = self.gait.problem
         pairs = (
             (problem.step_length_m, own.step_length_m),
             (problem.stride_time_s, own.stride_time_s),
         )
-        return all(abs(wanted / has - 1) <= NEAR for wanted, has in pairs)
+        return all(abs(wanted / has - 1) <= SAME_STEPS for wanted, has in pairs)
 
     def orders(self, problem: GaitProblem) -> Orders | None:
         """The orders of its phases in the halves of a problem; None where that excludes them."""

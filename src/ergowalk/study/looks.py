@@ -83,6 +83,8 @@ class Looks:
         """The record that stands for each case."""
         self.searches = dict.fromkeys(self.best, 1)
         """How often each case was searched."""
+        self.cpu_s = {key: record.get("cpu_s") or 0.0 for key, record in self.best.items()}
+        """Processor time [s] of all searches of each case."""
         self._complete = len(self.best) == len(self.keys)
         self._places = {
             case["key"]: np.array(case["place"])
@@ -115,6 +117,7 @@ class Looks:
     def _take(self, look: Look, record: Record) -> None:
         self._tried.add((look.case, look.start))
         self.searches[look.case] += 1
+        self.cpu_s[look.case] += record.get("cpu_s") or 0.0
         if _rank(record) < _rank(self.best[look.case]):
             self.best[look.case] = record
 

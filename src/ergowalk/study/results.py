@@ -74,7 +74,7 @@ def collect(folder: str | Path, name: str | None = None) -> xr.Dataset:
         Of a grid over its fields as dimensions, of any other sweep over ``case`` with the fields
         as coordinates; NaN, or "" where there is no text, of cases without a gait. ``acceptable``
         is the verdict of solver and audit. Of a case that was looked at again it is all of the
-        best search, effort too; ``searches`` says how many there were.
+        best search, but ``cpu_s`` counts all ``searches``.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def collect(folder: str | Path, name: str | None = None) -> xr.Dataset:
     definition = store.definition(name)
     cases = definition["cases"]
     looks = Looks(definition, store.done).finished()
-    records = [looks.best.get(c["key"], {"key": c["key"], "status": "missing"}) for c in cases]
+    records = [_standing(looks, case["key"]) for case in cases]
     dims, shape, coords = _frame(definition)
 
     def shaped(values: list[Any], more: tuple[int, ...] = ()) -> Any:
@@ -116,6 +116,14 @@ def collect(folder: str | Path, name: str | None = None) -> xr.Dataset:
         "leg_length_m": definition["leg_length_m"],
     }
     return xr.Dataset(data, coords, about)
+
+
+def _standing(looks: Looks, key: str) -> Record:
+    """The record that stands for a case, with the processor time of all its searches."""
+    if key not in looks.best:
+        return {"key": key, "status": "missing"}
+    several = looks.searches[key] > 1
+    return looks.best[key] | ({"cpu_s": looks.cpu_s[key]} if several else {})
 
 
 def _frame(definition: dict[str, Any]) -> tuple[tuple[str, ...], tuple[int, ...], dict[str, Any]]:

@@ -180,7 +180,7 @@ class _Run:
 
     def on(self, client: Any) -> None:
         """Let the missing cases run on a cluster."""
-        self.store.make_room(self.missing)
+        self.store.make_room(self.missing)  # second looks have names of their own
         self.began = self.indexed = time.monotonic()
         try:
             while self.ready or self.flying:
